@@ -1,0 +1,94 @@
+// What a motion is made of: joints, skeletons, clips as BVH stores them and motions as the library computes
+// with them.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace motiongan::motion {
+
+using Vec3 = std::array<double, 3>;
+
+/// Unit quaternion, scalar first.
+struct Quat {
+  double w = 1, x = 0, y = 0, z = 0;
+  friend bool operator==(const Quat&, const Quat&) = default;
+};
+
+/// One number of a BVH frame. Rotations are in degrees, positions in the file's length unit.
+enum class Channel { x_position, y_position, z_position, x_rotation, y_rotation, z_rotation };
+
+inline bool is_rotation(Channel c) { return c >= Channel::x_rotation; }
+
+/// 0, 1 or 2 for x, y or z.
+inline std::size_t axis(Channel c) { return static_cast<std::size_t>(c) % 3; }
+
+struct Joint {
+  std::string name;
+  int parent = -1;  ///< index into Skeleton::joints, always smaller than the joint's own; -1 for the root
+  Vec3 offset{};    ///< from the parent's origin, in the parent's frame, in the file's unit
+  std::vector<Channel>
+      channels;  ///< in the order of the file; rotations apply left to right: R = R1 * R2 * R3
+  std::optional<Vec3> end_site;  ///< offset of the End Site, where the file has one
+
+  friend bool operator==(const Joint&, const Joint&) = default;
+};
+
+/// A tree of joints, parents before children, in the order of the BVH file.
+struct Skeleton {
+  std::vector<Joint> joints;
+
+  std::size_t size() const { return joints.size(); }
+
+  /// How many numbers one frame of a BVH file of this skeleton has.
+  std::size_t channel_count() const {
+    std::size_t n = 0;
+    for (const Joint& j : joints) n += j.channels.size();
+    return n;
+  }
+
+  /// Index of the joint called `name`, or -1.
+  int find(std::string_view name) const {
+    for (std::size_t i = 0; i < joints.size(); ++i)
+      if (joints[i].name == name) return static_cast<int>(i);
+    return -1;
+  }
+
+  friend bool operator==(const Skeleton&, const Skeleton&) = default;
+};
+
+/// A BVH file: a skeleton and its channels, frame by frame, exactly as written.
+struct Clip {
+  std::string id;  ///< the file's name without folder and extension
+  Skeleton skeleton;
+  double frame_time = 0;  ///< seconds between two frames
+  std::size_t frames = 0;
+  std::vector<double> channels;  ///< [frames, skeleton.channel_count()], degrees and length units
+
+  double rate() const { return 1.0 / frame_time; }
+};
+
+/// A motion free of channel orders: local rotations of every joint and the root's track.
+/// Every motion of the library, read, generated or procedural, passes through this form.
+struct Motion {
+  Skeleton skeleton;
+  double rate = 0;  ///< frames per second
+  std::size_t frames = 0;
+  std::vector<Quat> rotations;  ///< [frames, joints], each joint's rotation relative to its parent
+  std::vector<Vec3> positions;  ///< [frames, joints], each joint's origin in its parent's frame (its offset,
+                                ///< unless it has position channels)
+
+  const Quat& rotation(std::size_t frame, std::size_t joint) const {
+    return rotations[frame * skeleton.size() + joint];
+  }
+  Quat& rotation(std::size_t frame, std::size_t joint) { return rotations[frame * skeleton.size() + joint]; }
+  const Vec3& position(std::size_t frame, std::size_t joint) const {
+    return positions[frame * skeleton.size() + joint];
+  }
+  Vec3& position(std::size_t frame, std::size_t joint) { return positions[frame * skeleton.size() + joint]; }
+};
+
+}  // namespace motiongan::motion
