@@ -1,0 +1,171 @@
+// Tensors: a shape and a piece of a device buffer, in the number type of their Context.
+#pragma once
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "context.hpp"
+
+namespace motiongan {
+
+/// Sizes of the dimensions, slowest first. Motion is [frames, batch, channels].
+using Shape = std::vector<std::size_t>;
+
+inline std::size_t element_count(const Shape& shape) {
+  std::size_t n = 1;
+  for (std::size_t size : shape) n *= size;
+  return n;
+}
+
+/// "[32, 64, 93]"
+inline std::string to_string(const Shape& shape) {
+  std::string text = "[";
+  for (std::size_t i = 0; i < shape.size(); ++i) text += concat(i ? ", " : "", shape[i]);
+  return text + "]";
+}
+
+/// A contiguous array on the device. Copies share the data; the data are not initialised.
+class Tensor {
+ public:
+  Tensor() = default;
+  Tensor(const Context& context, Shape shape)
+      : context_(context),
+        storage_(context.allocate(element_count(shape) * context.real_size())),
+        size_(element_count(shape)),
+        shape_(std::move(shape)) {}
+
+  /// A tensor with the given values, converted to the context's type.
+  template <class T>
+  static Tensor from(const Context& context, Shape shape, std::span<const T> values) {
+    Tensor t(context, std::move(shape));
+    t.write(values);
+    return t;
+  }
+  template <class T>
+  static Tensor from(const Context& context, Shape shape, const std::vector<T>& values) {
+    return from(context, std::move(shape), std::span<const T>(values));
+  }
+
+  bool empty() const { return storage_ == nullptr; }
+  const Context& context() const { return *context_; }
+  const Shape& shape() const { return shape_; }
+  std::size_t size() const { return size_; }
+  std::size_t dim(std::size_t i) const { return shape_.at(i); }
+  std::size_t rank() const { return shape_.size(); }
+  cl_mem buffer() const { return storage_->buffer(); }
+  /// First element within the buffer.
+  std::size_t offset() const { return offset_; }
+
+  /// The same data under another shape of the same size.
+  Tensor reshape(Shape shape) const {
+    require(element_count(shape) == size_, "cannot reshape ", to_string(shape_), " to ", to_string(shape));
+    Tensor t = *this;
+    t.shape_ = std::move(shape);
+    return t;
+  }
+
+  /// A piece of the same data: `shape` elements from `first` on.
+  Tensor view(std::size_t first, Shape shape) const {
+    const std::size_t n = element_count(shape);
+    require(first + n <= size_, "view of ", n, " elements from ", first, " does not fit ", to_string(shape_));
+    Tensor t = *this;
+    t.offset_ += first;
+    t.size_ = n;
+    t.shape_ = std::move(shape);
+    return t;
+  }
+
+  /// Uploads without waiting for the queue.
+  template <class T>
+  void write(std::span<const T> values) {
+    require(values.size() == size_, values.size(), " values given for a tensor of shape ", to_string(shape_));
+    if (context_->precision() == Precision::f64)
+      write_as<double>(values);
+    else
+      write_as<float>(values);
+  }
+
+  /// Reads back all values; waits for the queue.
+  template <class T = float>
+  std::vector<T> to_host() const {
+    return context_->precision() == Precision::f64 ? read_as<double, T>() : read_as<float, T>();
+  }
+
+  /// The only value of a one-element tensor; waits for the queue.
+  double item() const {
+    require(size_ == 1, "item() needs one element, the shape is ", to_string(shape_));
+    return to_host<double>()[0];
+  }
+
+  std::string describe() const { return to_string(shape_); }
+
+ private:
+  template <class Stored, class T>
+  void write_as(std::span<const T> values) {
+    if constexpr (std::is_same_v<Stored, T>) {
+      context_->write(buffer(), offset_ * sizeof(T), values.data(), values.size_bytes());
+    } else {
+      const std::vector<Stored> converted(values.begin(), values.end());
+      context_->write(buffer(), offset_ * sizeof(Stored), converted.data(),
+                      converted.size() * sizeof(Stored));
+    }
+  }
+  template <class Stored, class T>
+  std::vector<T> read_as() const {
+    std::vector<Stored> values(size_);
+    context_->read(buffer(), offset_ * sizeof(Stored), values.data(), size_ * sizeof(Stored));
+    if constexpr (std::is_same_v<Stored, T>)
+      return values;
+    else
+      return std::vector<T>(values.begin(), values.end());
+  }
+
+  std::optional<Context> context_;  // a Context is never empty, an unset tensor has none
+  std::shared_ptr<detail::Storage> storage_;
+  std::size_t offset_ = 0, size_ = 0;
+  Shape shape_;
+};
+
+/// Whole numbers on the device: word ids, row indices, frame offsets.
+class Indices {
+ public:
+  Indices() = default;
+  Indices(const Context& context, std::size_t size)
+      : context_(context), storage_(context.allocate(size * sizeof(cl_int))), size_(size) {}
+  Indices(const Context& context, std::span<const cl_int> values) : Indices(context, values.size()) {
+    write(values);
+  }
+  Indices(const Context& context, const std::vector<cl_int>& values)
+      : Indices(context, std::span<const cl_int>(values)) {}
+
+  bool empty() const { return storage_ == nullptr; }
+  std::size_t size() const { return size_; }
+  const Context& context() const { return *context_; }
+  cl_mem buffer() const { return storage_->buffer(); }
+  void write(std::span<const cl_int> values) {
+    require(values.size() == size_, values.size(), " values given for ", size_, " indices");
+    context_->write(buffer(), 0, values.data(), values.size_bytes());
+  }
+  std::vector<cl_int> to_host() const {
+    std::vector<cl_int> values(size_);
+    context_->read(buffer(), 0, values.data(), size_ * sizeof(cl_int));
+    return values;
+  }
+  std::string describe() const { return concat("indices[", size_, "]"); }
+
+ private:
+  std::optional<Context> context_;
+  std::shared_ptr<detail::Storage> storage_;
+  std::size_t size_ = 0;
+};
+
+namespace detail {
+inline void add_argument(KernelArguments& to, const Tensor& tensor) {
+  to.set(tensor.buffer());
+  add_argument(to, tensor.offset());
+}
+inline void add_argument(KernelArguments& to, const Indices& indices) { to.set(indices.buffer()); }
+}  // namespace detail
+
+}  // namespace motiongan
