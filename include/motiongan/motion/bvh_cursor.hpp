@@ -1,0 +1,177 @@
+// A text and a place in it: the words, names and numbers of a BVH file, and messages that say where.
+#pragma once
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "motiongan/core/error.hpp"
+
+namespace motiongan::motion {
+
+namespace bvh_detail {
+
+inline bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+
+inline bool same_word(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
+    return std::tolower(static_cast<unsigned char>(x)) == std::tolower(static_cast<unsigned char>(y));
+  });
+}
+
+/// Walks over the text and knows at which line and column it is.
+class Cursor {
+ public:
+  Cursor(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {
+    if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);  // a UTF-8 byte order mark
+  }
+
+  /// Throws `file:line:column: parts` for the place `at`.
+  template <class... Parts>
+  [[noreturn]] void fail_at(std::size_t at, const Parts&... parts) const {
+    const std::string_view before = text_.substr(0, at);
+    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+    const std::size_t start = before.rfind('\n') + 1;  // npos + 1 is 0
+    throw Error(file_, ":", line, ":", at - start + 1, ": ", parts...);
+  }
+
+  /// How a piece of the file is shown in a message: quoted, short, without control characters.
+  static std::string quoted(std::string_view piece) {
+    if (piece.empty()) return "the end of the file";
+    std::string out = "'";
+    for (const char c : piece.substr(0, 40)) out += std::iscntrl(static_cast<unsigned char>(c)) ? '?' : c;
+    return out + (piece.size() > 40 ? "...'" : "'");
+  }
+
+  void skip_space() {
+    while (at_ < text_.size() && (is_blank(text_[at_]) || text_[at_] == '\n')) ++at_;
+  }
+  void skip_blanks() {
+    while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
+  }
+  bool at_line_end() {
+    skip_blanks();
+    return at_ >= text_.size() || text_[at_] == '\n';
+  }
+  bool at_end() const { return at_ >= text_.size(); }
+  std::size_t place() const { return at_; }
+  std::size_t left() const { return text_.size() - at_; }
+
+  /// The next word, without passing it; braces are words of their own. Empty at the end.
+  std::string_view peek() {
+    skip_space();
+    return peek_here();
+  }
+  std::string_view next() {
+    const std::string_view word = peek();
+    at_ += word.size();
+    return word;
+  }
+
+  void expect(std::string_view word, std::string_view where) {
+    const std::string_view found = peek();
+    if (!same_word(found, word)) fail_at(at_, "found ", quoted(found), ", expected ", word, where);
+    at_ += found.size();
+  }
+
+  /// `Frames:` and the like, with or without space before the colon.
+  void expect_label(std::string_view label) {
+    skip_space();
+    const std::size_t start = at_;
+    std::size_t p = at_;
+    for (const char c : label) {
+      while (c == ':' && p < text_.size() && is_blank(text_[p])) ++p;
+      const bool gap = c == ' ';
+      if (p >= text_.size() || !(gap ? is_blank(text_[p]) : same_word(text_.substr(p, 1), {&c, 1})))
+        fail_at(start, "found ", quoted(peek_here()), ", expected '", label, "'");
+      ++p;
+      while (gap && p < text_.size() && is_blank(text_[p])) ++p;
+    }
+    at_ = p;
+  }
+
+  /// A joint's name: the rest of the line, up to an opening brace. Spaces inside belong to it.
+  std::string_view rest_of_name() {
+    skip_blanks();
+    std::size_t stop = std::min(text_.find('\n', at_), text_.size());
+    for (std::size_t p = at_; p < stop; ++p) {
+      if (text_[p] != '{') continue;
+      const bool after_blank = p == at_ || is_blank(text_[p - 1]);
+      const bool last = std::all_of(text_.begin() + static_cast<std::ptrdiff_t>(p) + 1,
+                                    text_.begin() + static_cast<std::ptrdiff_t>(stop), is_blank);
+      if (after_blank || last) stop = p;
+    }
+    std::string_view name = text_.substr(at_, stop - at_);
+    while (!name.empty() && is_blank(name.back())) name.remove_suffix(1);
+    at_ = stop;
+    return name;
+  }
+
+  /// A finite number.
+  double number(std::string_view what) {
+    skip_space();
+    return number_here(what);
+  }
+  double number_here(std::string_view what) {
+    const char* const end = text_.data() + text_.size();
+    const char* start = text_.data() + at_;
+    if (start != end && *start == '+' && start + 1 != end && start[1] != '-') ++start;
+    double value = 0;
+    const auto [stop, error] = std::from_chars(start, end, value);
+    const bool whole = stop == end || is_blank(*stop) || *stop == '\n' || *stop == '{' || *stop == '}';
+    if (error == std::errc() && whole && std::isfinite(value)) {
+      at_ = static_cast<std::size_t>(stop - text_.data());
+      return value;
+    }
+    const std::string_view word = peek_here();
+    if (error == std::errc::result_out_of_range && whole) {
+      // Too small for a double is zero; too large has no value.
+      const bool tiny = word.find("e-") != word.npos || word.find("E-") != word.npos ||
+                        word.find_first_not_of("+-0.") > word.find('.');
+      if (tiny) {
+        at_ += word.size();
+        return 0;
+      }
+      fail_at(at_, "found ", quoted(word), ", which is too large, expected ", what);
+    }
+    fail_at(at_, "found ", word.empty() && !at_end() ? "the end of the line" : quoted(word), ", expected ",
+            what, " (a finite number with a decimal point)");
+  }
+
+  /// A whole number of at least 0.
+  std::size_t count(std::string_view what) {
+    const std::string_view word = peek();
+    unsigned long long value = 0;
+    const char* const end = word.data() + word.size();
+    const auto [stop, error] = std::from_chars(word.data(), end, value);
+    if (word.empty() || error != std::errc() || stop != end)
+      fail_at(at_, "found ", quoted(word), ", expected ", what, " (a whole number, 0 or more)");
+    at_ += word.size();
+    return static_cast<std::size_t>(value);
+  }
+
+ private:
+  std::string_view peek_here() const {
+    std::size_t stop = at_;
+    while (stop < text_.size() && !is_blank(text_[stop]) && text_[stop] != '\n') {
+      const bool brace = text_[stop] == '{' || text_[stop] == '}';
+      if (brace && stop > at_) break;
+      ++stop;
+      if (brace) break;
+    }
+    return text_.substr(at_, stop - at_);
+  }
+
+  std::string_view text_;
+  std::string file_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace bvh_detail
+
+}  // namespace motiongan::motion

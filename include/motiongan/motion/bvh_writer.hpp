@@ -1,0 +1,156 @@
+// Writing BVH. Numbers are written in the fewest digits that read back as the same double, so a file that is
+// read and written again keeps every number; motions are rounded to six decimals first, as is usual.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "motiongan/core/error.hpp"
+#include "motiongan/motion/bvh_reader.hpp"
+#include "motiongan/motion/motion.hpp"
+#include "motiongan/motion/skeleton.hpp"
+
+namespace motiongan::motion {
+
+namespace bvh_detail {
+
+inline void append_number(std::string& out, double value) {
+  // Without exponents, which not every tool reads. 400 characters hold any double.
+  std::array<char, 400> digits;
+  const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), value == 0 ? 0.0 : value,
+                                    std::chars_format::fixed);
+  out.append(digits.data(), result.ptr);
+}
+
+inline void append_offset(std::string& out, const std::string& indent, const Vec3& offset) {
+  out += indent + "OFFSET";
+  for (const double v : offset) {
+    require(std::isfinite(v), "an OFFSET of ", v, " cannot be written as BVH: it must be finite");
+    out += ' ';
+    append_number(out, v);
+  }
+  out += '\n';
+}
+
+/// Error unless a reader would find this name again.
+inline void check_name(const std::string& name) {
+  const bool sound = !name.empty() && !is_blank(name.front()) && !is_blank(name.back()) &&
+                     name.front() != '{' && name.back() != '{' && name.find('\n') == name.npos &&
+                     name.find(" {") == name.npos && name.find("\t{") == name.npos;
+  require(
+      sound, "a joint called '", name,
+      "' cannot be written as BVH: a name needs a character, no line end, no space at its ends and no brace "
+      "at its start or end or after a space");
+}
+
+}  // namespace bvh_detail
+
+/// The HIERARCHY part of a BVH file. Error for names and offsets that BVH cannot hold.
+inline std::string format_hierarchy(const Skeleton& skeleton) {
+  constexpr std::array<std::string_view, 6> names{"Xposition", "Yposition", "Zposition",
+                                                  "Xrotation", "Yrotation", "Zrotation"};
+  require(skeleton.size() > 0, "a skeleton without joints cannot be written as BVH");
+  std::string out = "HIERARCHY\n";
+  std::vector<int> open;  // the joints whose braces are open
+  const auto indent = [&] { return std::string(open.size(), '\t'); };
+  const auto close = [&] {
+    const Joint& joint = skeleton.joints[static_cast<std::size_t>(open.back())];
+    if (joint.end_site) {
+      out += indent() + "End Site\n" + indent() + "{\n";
+      bvh_detail::append_offset(out, indent() + "\t", *joint.end_site);
+      out += indent() + "}\n";
+    }
+    open.pop_back();
+    out += indent() + "}\n";
+  };
+  for (std::size_t j = 0; j < skeleton.size(); ++j) {
+    const Joint& joint = skeleton.joints[j];
+    while (!open.empty() && open.back() != joint.parent) close();
+    // BVH lists a joint's whole branch before the next one; another order would renumber the channels.
+    require(!open.empty() || (j == 0 && joint.parent == -1), "joint '", joint.name, "' has parent ",
+            joint.parent, ", which is not on the branch before it: BVH needs one root and depth-first order");
+    bvh_detail::check_name(joint.name);
+    out += indent() + (j == 0 ? "ROOT " : "JOINT ") + joint.name + '\n' + indent() + "{\n";
+    open.push_back(static_cast<int>(j));
+    require(open.size() <= bvh_detail::max_depth, "joint '", joint.name, "' is nested more than ",
+            bvh_detail::max_depth, " deep");
+    bvh_detail::append_offset(out, indent(), joint.offset);
+    out += indent() + "CHANNELS " + std::to_string(joint.channels.size());
+    for (const Channel c : joint.channels) out.append(" ").append(names[static_cast<std::size_t>(c)]);
+    out += '\n';
+  }
+  while (!open.empty()) close();
+  return out;
+}
+
+/// The whole BVH text of a clip; every number reads back as the same double.
+inline std::string format_bvh(const Clip& clip) {
+  const std::size_t width = clip.skeleton.channel_count();
+  require(clip.channels.size() == clip.frames * width, "clip '", clip.id, "' has ", clip.channels.size(),
+          " values, expected ", clip.frames, " frames x ", width, " channels");
+  require(std::isfinite(clip.frame_time) && clip.frame_time >= 1e-6, "clip '", clip.id,
+          "' has a frame time of ", clip.frame_time, " seconds, expected at least 0.000001");
+  require(width > 0 || clip.frames == 0, "clip '", clip.id, "' has frames but no channels");
+  std::string out = format_hierarchy(clip.skeleton);
+  out.reserve(out.size() + 64 + clip.channels.size() * 11);
+  out += "MOTION\nFrames: " + std::to_string(clip.frames) + "\nFrame Time: ";
+  bvh_detail::append_number(out, clip.frame_time);
+  out += '\n';
+  for (std::size_t f = 0; f < clip.frames; ++f) {
+    for (std::size_t i = 0; i < width; ++i) {
+      const double value = clip.channels[f * width + i];
+      require(std::isfinite(value), "clip '", clip.id, "', frame ", f + 1, ", channel ", i + 1, " is ", value,
+              "; BVH holds finite numbers only");
+      if (i > 0) out += ' ';
+      bvh_detail::append_number(out, value);
+    }
+    out += '\n';
+  }
+  return out;
+}
+
+/// Writes `text` beside `path` and renames it, so that `path` never holds half a file.
+inline void write_text_atomically(const std::filesystem::path& path, std::string_view text) {
+  std::filesystem::path beside = path;
+  beside += ".tmp";
+  std::error_code problem;
+  {
+    std::ofstream out(beside, std::ios::binary | std::ios::trunc);
+    require(out.good(), "cannot write ", beside.string(), "; does its folder exist and may you write there?");
+    out.write(text.data(), static_cast<std::streamsize>(text.size()));
+    out.flush();
+    if (!out.good()) {
+      out.close();
+      std::filesystem::remove(beside, problem);
+      throw Error("writing ", text.size(), " bytes to ", beside.string(), " failed; is the disk full?");
+    }
+  }
+  std::filesystem::rename(beside, path, problem);
+  if (problem) {
+    std::error_code ignored;
+    std::filesystem::remove(beside, ignored);
+    throw Error("cannot rename ", beside.string(), " to ", path.string(), ": ", problem.message());
+  }
+}
+
+inline void write_bvh(const std::filesystem::path& path, const Clip& clip) {
+  write_text_atomically(path, format_bvh(clip));
+}
+
+/// Writes a motion in its skeleton's own channels, rounded to six decimals (degrees and length units).
+inline void write_bvh(const std::filesystem::path& path, const Motion& motion) {
+  Clip clip = to_clip(motion, path.stem().string());
+  for (double& v : clip.channels)
+    if (std::abs(v) < 1e9) v = std::round(v * 1e6) / 1e6;
+  write_bvh(path, clip);
+}
+
+}  // namespace motiongan::motion

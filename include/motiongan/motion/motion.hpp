@@ -1,0 +1,191 @@
+// From BVH's channels to local rotations and back, and changing a motion's rate and length.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "motiongan/core/error.hpp"
+#include "motiongan/motion/kinematics.hpp"
+#include "motiongan/motion/rotation.hpp"
+#include "motiongan/motion/skeleton.hpp"
+
+namespace motiongan::motion {
+
+/// Frames per second of a frame time as files print it: 0.0083333 means 120. A rate within 0.05% of a whole
+/// number is that number (29.97 and 59.94, 0.1% off, stay what they are).
+inline double rate_from_frame_time(double frame_time) {
+  require(std::isfinite(frame_time) && frame_time > 0, "frame time ", frame_time,
+          " seconds, expected a positive number");
+  const double rate = 1.0 / frame_time, whole = std::round(rate);
+  return std::abs(rate - whole) <= 5e-4 * rate ? whole : rate;
+}
+
+/// The clip's channels as local rotations and positions. A position channel replaces its part of the joint's
+/// offset; joints without rotation channels do not turn.
+inline Motion to_motion(const Clip& clip) {
+  const std::size_t joints = clip.skeleton.size(), width = clip.skeleton.channel_count();
+  require(clip.channels.size() == clip.frames * width, "clip '", clip.id, "' has ", clip.channels.size(),
+          " values, expected ", clip.frames, " frames x ", width, " channels");
+  Motion motion;
+  motion.skeleton = clip.skeleton;
+  motion.rate = rate_from_frame_time(clip.frame_time);
+  motion.frames = clip.frames;
+  motion.rotations.resize(clip.frames * joints);
+  motion.positions.resize(clip.frames * joints);
+  std::vector<EulerOrder> orders;
+  for (const Joint& j : clip.skeleton.joints) orders.emplace_back(j.channels);
+  const double* value = clip.channels.data();
+  for (std::size_t f = 0; f < clip.frames; ++f) {
+    for (std::size_t j = 0; j < joints; ++j) {
+      const Joint& joint = clip.skeleton.joints[j];
+      Vec3 position = joint.offset, angles{};
+      std::size_t turn = 0;
+      for (const Channel c : joint.channels) {
+        if (is_rotation(c))
+          angles[turn++] = radians(*value++);
+        else
+          position[axis(c)] = *value++;
+      }
+      motion.rotation(f, j) = quat_from_euler(orders[j], angles);
+      motion.position(f, j) = position;
+    }
+  }
+  return motion;
+}
+
+/// The motion in its skeleton's own channels: Euler angles in each joint's order, continuous over time. What
+/// a joint has no channel for is left out (a rotation about a missing axis, a position without position
+/// channels).
+inline Clip to_clip(const Motion& motion, std::string id) {
+  check_motion(motion);
+  require(motion.rate > 0, "motion '", id, "' has a rate of ", motion.rate,
+          " frames per second, expected more than 0");
+  const std::size_t joints = motion.skeleton.size(), width = motion.skeleton.channel_count();
+  Clip clip;
+  clip.id = std::move(id);
+  clip.skeleton = motion.skeleton;
+  clip.frame_time = 1.0 / motion.rate;
+  clip.frames = motion.frames;
+  clip.channels.reserve(motion.frames * width);
+  std::vector<EulerOrder> orders;
+  for (const Joint& j : motion.skeleton.joints) orders.emplace_back(j.channels);
+  std::vector<Vec3> previous(joints, Vec3{});  // angles of the frame before, [joints]
+  for (std::size_t f = 0; f < motion.frames; ++f) {
+    for (std::size_t j = 0; j < joints; ++j) {
+      const Quat& q = motion.rotation(f, j);
+      // The first frame has nothing to be continuous with: it takes the smallest angles.
+      const Vec3 angles =
+          f == 0 ? euler_from_quat(orders[j], q) : euler_from_quat_near(orders[j], q, previous[j]);
+      previous[j] = angles;
+      std::size_t turn = 0;
+      for (const Channel c : motion.skeleton.joints[j].channels)
+        clip.channels.push_back(is_rotation(c) ? degrees(angles[turn++]) : motion.position(f, j)[axis(c)]);
+    }
+  }
+  return clip;
+}
+
+/// The motion between its first and last frame at another rate: rotations by slerp, positions linearly. The
+/// new frames lie at 0, 1/rate, 2/rate ... and none after the last old one.
+inline Motion resample(const Motion& motion, double rate) {
+  check_motion(motion);
+  require(std::isfinite(rate) && rate > 0, "cannot resample to ", rate,
+          " frames per second, expected more than 0");
+  if (motion.frames == 0 || rate == motion.rate) {
+    Motion same = motion;
+    same.rate = rate;
+    return same;
+  }
+  const std::size_t joints = motion.skeleton.size();
+  const std::size_t last = motion.frames - 1;
+  const double step = motion.rate / rate;  // old frames per new one
+  const double count = std::floor(static_cast<double>(last) / step * (1 + 1e-12) + 1e-9);
+  require(count < 1e9, "resampling ", motion.frames, " frames from ", motion.rate, " to ", rate,
+          " per second would make ", count, " frames, expected fewer than 1e9");
+  Motion out;
+  out.skeleton = motion.skeleton;
+  out.rate = rate;
+  out.frames = static_cast<std::size_t>(count) + 1;
+  out.rotations.reserve(out.frames * joints);
+  out.positions.reserve(out.frames * joints);
+  for (std::size_t f = 0; f < out.frames; ++f) {
+    const double at = std::min(static_cast<double>(f) * step, static_cast<double>(last));
+    const double nearest = std::round(at);
+    const bool exact = std::abs(at - nearest) < 1e-9;  // an old frame is taken as it is
+    const auto before = static_cast<std::size_t>(exact ? nearest : std::floor(at));
+    const std::size_t after = std::min(before + 1, last);
+    const double t = exact ? 0 : at - std::floor(at);
+    for (std::size_t j = 0; j < joints; ++j) {
+      const Vec3 &a = motion.position(before, j), &b = motion.position(after, j);
+      out.positions.push_back(t == 0 ? a : add(scale(a, 1 - t), scale(b, t)));
+      out.rotations.push_back(t == 0 ? motion.rotation(before, j)
+                                     : slerp(motion.rotation(before, j), motion.rotation(after, j), t));
+    }
+  }
+  return out;
+}
+
+/// Frames first .. first + count - 1; Error where the motion does not have them.
+inline Motion slice(const Motion& motion, std::size_t first, std::size_t count) {
+  check_motion(motion);
+  require(first <= motion.frames && count <= motion.frames - first, "cannot take frames ", first, " to ",
+          first + count, " of a motion of ", motion.frames);
+  const auto joints = static_cast<std::ptrdiff_t>(motion.skeleton.size());
+  const auto begin = static_cast<std::ptrdiff_t>(first) * joints;
+  const auto end = begin + static_cast<std::ptrdiff_t>(count) * joints;
+  Motion out;
+  out.skeleton = motion.skeleton;
+  out.rate = motion.rate;
+  out.frames = count;
+  out.rotations.assign(motion.rotations.begin() + begin, motion.rotations.begin() + end);
+  out.positions.assign(motion.positions.begin() + begin, motion.positions.begin() + end);
+  return out;
+}
+
+/// What to do with a clip's first frame, which in the CMU conversions is an added T-pose.
+enum class FirstFrame {
+  automatic,  ///< drop it if it is a T-pose by starts_with_t_pose
+  keep,
+  drop
+};
+
+/// Whether frame 0 is a pose that was put in front of the motion: every rotation in it is a whole number of
+/// degrees and most are zero (the CMU files' is zero but for seven joint angles such as 21), frame 1's are
+/// not, and the step from frame 0 to 1 is a jump: over a degree, and over three times the step from 1 to 2.
+inline bool starts_with_t_pose(const Clip& clip) {
+  const std::size_t width = clip.skeleton.channel_count();
+  if (clip.frames < 2 || clip.channels.size() < 2 * width) return false;
+  std::size_t turns = 0, zeros = 0, at = 0;
+  bool whole_next = true;
+  double jump = 0, step = 0;
+  const auto moved = [](double a, double b) { return std::abs(std::remainder(a - b, 360.0)); };
+  for (const Joint& joint : clip.skeleton.joints) {
+    for (const Channel c : joint.channels) {
+      const std::size_t i = at++;
+      if (!is_rotation(c)) continue;
+      const double first = clip.channels[i], second = clip.channels[width + i];
+      if (first != std::round(first)) return false;
+      ++turns;
+      zeros += first == 0;
+      whole_next = whole_next && second == std::round(second);
+      jump = std::max(jump, moved(first, second));
+      if (clip.frames > 2) step = std::max(step, moved(second, clip.channels[2 * width + i]));
+    }
+  }
+  return 2 * zeros > turns && !whole_next && jump > 1 && jump > 3 * step;
+}
+
+/// Removes frame 0 where `rule` asks for it; returns whether it did.
+inline bool drop_first_frame(Clip& clip, FirstFrame rule) {
+  if (rule == FirstFrame::keep || clip.frames == 0) return false;
+  if (rule == FirstFrame::automatic && !starts_with_t_pose(clip)) return false;
+  clip.channels.erase(clip.channels.begin(),
+                      clip.channels.begin() + static_cast<std::ptrdiff_t>(clip.skeleton.channel_count()));
+  --clip.frames;
+  return true;
+}
+
+}  // namespace motiongan::motion
