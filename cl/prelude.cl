@@ -13,6 +13,9 @@
 typedef REAL real;
 typedef JOIN(REAL, VW) realv;
 typedef JOIN(REAL_BITS, VW) maskv;  // what a comparison of two realv gives
+// (PoCL has macros of its own by these names.)
+#undef vload
+#undef vstore
 #define vload JOIN(vload, VW)
 #define vstore JOIN(vstore, VW)
 
@@ -31,4 +34,26 @@ inline real lane_sum(realv v) {
 #else
   return (b.x + b.z) + (b.y + b.w);
 #endif
+}
+
+/// The `left` (< VW) numbers at p in the first lanes, zeros behind. Tails go through the same vector code as the rest,
+/// so that a number does not depend on its place in the array.
+inline realv load_part(global const real* p, uint left) {
+  real lanes[VW];
+  for (uint j = 0; j < VW; ++j) lanes[j] = j < left ? p[j] : (real)0;
+  return vload(0, lanes);
+}
+
+inline void store_part(realv v, global real* p, uint left) {
+  real lanes[VW];
+  vstore(v, 0, lanes);
+  for (uint j = 0; j < left; ++j) p[j] = lanes[j];
+}
+
+inline realv load_some(global const real* p, uint left) { return left >= VW ? vload(0, p) : load_part(p, left); }
+inline void store_some(realv v, global real* p, uint left) {
+  if (left >= VW)
+    vstore(v, 0, p);
+  else
+    store_part(v, p, left);
 }

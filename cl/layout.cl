@@ -1,0 +1,90 @@
+// Moving rows and frames about. Motion is [frames, batch, channels]; a row is one frame of one sample.
+
+/// out[o*out_stride + r] = x[o*x_stride + r] for r < run, o < outer (added to what is there if `accumulate`).
+kernel void copy_runs(global const real* x, uint x0, uint x_stride, global real* out, uint out0, uint out_stride,
+                      uint outer, uint run, uint accumulate) {
+  const uint columns = (run + VW - 1) / VW, item = get_global_id(0);
+  const uint o = item / columns, r = item % columns * VW;
+  if (o >= outer) return;
+  const uint left = run - r;
+  global real* to = out + out0 + o * out_stride + r;
+  realv v = load_some(x + x0 + o * x_stride + r, left);
+  if (accumulate) v += load_some(to, left);
+  store_some(v, to, left);
+}
+
+/// out[t, b, :] = x[t + sign*offset[b], b, :], zero where that frame does not exist.
+kernel void shift_frames(global const real* x, uint x0, global const int* offset, global real* out, uint out0,
+                         uint frames_in, uint frames_out, uint batch, uint channels, int sign) {
+  const uint columns = (channels + VW - 1) / VW, item = get_global_id(0);
+  const uint row = item / columns, c = item % columns * VW;
+  if (row >= frames_out * batch) return;
+  const uint b = row % batch, left = channels - c;
+  const int t = (int)(row / batch) + sign * offset[b];
+  realv v = 0;
+  if (t >= 0 && t < (int)frames_in) v = load_some(x + x0 + ((uint)t * batch + b) * channels + c, left);
+  store_some(v, out + out0 + row * channels + c, left);
+}
+
+/// Means of neighbouring frames, odd pairs first: with pairs = frames/2, out[t] = (x[2t-1] + x[2t])/2 for t = 0..pairs and
+/// out[pairs+1+t] = (x[2t] + x[2t+1])/2 for t < pairs; frames outside are zero. A slab is all rows of one frame.
+kernel void pair_means(global const real* x, uint x0, global real* out, uint out0, uint frames, uint slab) {
+  const uint columns = (slab + VW - 1) / VW, item = get_global_id(0), pairs = frames / 2;
+  const uint t = item / columns, i = item % columns * VW;
+  if (t >= 2 * pairs + 1) return;
+  const uint left = slab - i;
+  const int first = t <= pairs ? 2 * (int)t - 1 : 2 * (int)(t - pairs - 1);
+  realv v = 0;
+  if (first >= 0) v = load_some(x + x0 + (uint)first * slab + i, left);
+  if (first + 1 < (int)frames) v += load_some(x + x0 + (uint)(first + 1) * slab + i, left);
+  store_some(v * (real)0.5, out + out0 + t * slab + i, left);
+}
+
+/// The adjoint of pair_means: out has `frames` frames, g has 2*(frames/2)+1.
+kernel void pair_means_adjoint(global const real* g, uint g0, global real* out, uint out0, uint frames, uint slab) {
+  const uint columns = (slab + VW - 1) / VW, item = get_global_id(0), pairs = frames / 2;
+  const uint u = item / columns, i = item % columns * VW;
+  if (u >= frames) return;
+  const uint left = slab - i, t = u / 2;
+  const uint odd = t + u % 2;                               // the odd pair that u is in: u = 2*odd or 2*odd - 1
+  realv v = 0;
+  if (odd <= pairs) v = load_some(g + g0 + odd * slab + i, left);
+  if (t < pairs) v += load_some(g + g0 + (pairs + 1 + t) * slab + i, left);
+  store_some(v * (real)0.5, out + out0 + u * slab + i, left);
+}
+
+/// out[r, :] = x[index[r], :]
+kernel void gather_rows(global const real* x, uint x0, global const int* index, global real* out, uint out0, uint rows,
+                        uint channels) {
+  const uint columns = (channels + VW - 1) / VW, item = get_global_id(0);
+  const uint r = item / columns, c = item % columns * VW;
+  if (r >= rows) return;
+  const uint left = channels - c;
+  store_some(load_some(x + x0 + (uint)index[r] * channels + c, left), out + out0 + r * channels + c, left);
+}
+
+/// out[v, :] = sum of x[r, :] over the rows r with index[r] = v, in ascending order (so that reruns are bit-equal).
+kernel void scatter_add_rows(global const real* x, uint x0, global const int* index, global real* out, uint out0,
+                             uint rows, uint out_rows, uint channels) {
+  const uint columns = (channels + VW - 1) / VW, item = get_global_id(0);
+  const uint v = item / columns, c = item % columns * VW;
+  if (v >= out_rows) return;
+  const uint left = channels - c;
+  realv sum = 0;
+  for (uint r = 0; r < rows; ++r)
+    if (index[r] == (int)v) sum += load_some(x + x0 + r * channels + c, left);
+  store_some(sum, out + out0 + v * channels + c, left);
+}
+
+/// One window of a clip for every sample: out[t, b, c] = poses[row[b] + t*stride, c], less its value in the window's
+/// first frame where relative[c] is set.
+kernel void gather_windows(global const real* poses, uint poses0, global const int* row, global const int* relative,
+                           global real* out, uint out0, uint frames, uint batch, uint channels, uint stride) {
+  const uint item = get_global_id(0);
+  const uint r = item / channels, c = item % channels;
+  if (r >= frames * batch) return;
+  const uint t = r / batch, first = (uint)row[r % batch];
+  real v = poses[poses0 + (first + t * stride) * channels + c];
+  if (relative[c]) v -= poses[poses0 + first * channels + c];
+  out[out0 + item] = v;
+}
