@@ -1,0 +1,219 @@
+// Named tensors in a file, in the format that PyTorch's world exchanges weights in:
+// 8 bytes length of the header (little endian), the header (JSON), the tensors' bytes.
+#pragma once
+#include <bit>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "../core/error.hpp"
+#include "atomic_file.hpp"
+#include "safetensors_header.hpp"
+
+namespace motiongan::io {
+
+static_assert(std::endian::native == std::endian::little, "safetensors files hold little-endian numbers");
+
+/// IEEE half precision to float, exactly.
+inline float half_to_float(std::uint16_t half) {
+  const int exponent = (half >> 10) & 31, mantissa = half & 1023;
+  float value = exponent == 0    ? std::ldexp(static_cast<float>(mantissa), -24)
+                : exponent != 31 ? std::ldexp(static_cast<float>(mantissa + 1024), exponent - 25)
+                : mantissa == 0  ? std::numeric_limits<float>::infinity()
+                                 : std::numeric_limits<float>::quiet_NaN();
+  return half & 0x8000 ? -value : value;
+}
+
+/// The upper half of a float to that float.
+inline float bfloat_to_float(std::uint16_t upper) {
+  return std::bit_cast<float>(static_cast<std::uint32_t>(upper) << 16);
+}
+
+/// One tensor of a file: its numbers as they are stored, row-major.
+struct SafeTensor {
+  std::string dtype;               ///< F64 F32 F16 BF16 I64 I32 I16 I8 U64 U32 U16 U8 BOOL
+  std::vector<std::size_t> shape;  ///< empty for a single number
+  std::vector<std::byte> data;     ///< dtype_size(dtype) bytes for each number
+
+  /// A tensor of `shape` with these `values` (float, double, std::int32_t, std::int64_t or std::uint8_t).
+  template <class T>
+  static SafeTensor of(std::vector<std::size_t> shape, const std::vector<T>& values) {
+    SafeTensor tensor{dtype_of<T>(), std::move(shape), {}};
+    const std::size_t bytes = tensor_bytes(tensor.dtype, tensor.shape, "a new tensor");
+    require(bytes == values.size() * sizeof(T), "a tensor of shape ", shape_text(tensor.shape), " needs ",
+            bytes / sizeof(T), " values, not ", values.size());
+    tensor.data.resize(bytes);
+    if (bytes > 0) std::memcpy(tensor.data.data(), values.data(), bytes);
+    return tensor;
+  }
+
+  /// How many numbers there are.
+  std::size_t count() const { return tensor_bytes(dtype, shape, "a tensor") / dtype_size(dtype); }
+
+  /// The numbers as T. A floating T takes F64, F32, F16 and BF16; a whole T takes the whole types and BOOL.
+  /// Throws Error for the other kind, and where a finite number has no place in T.
+  template <class T>
+  requires std::is_arithmetic_v<T> std::vector<T> as()
+  const {
+    if constexpr (std::is_floating_point_v<T>) {
+      if (dtype == "F64") return convert<double, T>([](double v) { return v; });
+      if (dtype == "F32") return convert<float, T>([](float v) { return v; });
+      if (dtype == "F16") return convert<std::uint16_t, T>(half_to_float);
+      if (dtype == "BF16") return convert<std::uint16_t, T>(bfloat_to_float);
+    } else {
+      const auto same = [](auto v) { return v; };
+      if (dtype == "I64") return convert<std::int64_t, T>(same);
+      if (dtype == "I32") return convert<std::int32_t, T>(same);
+      if (dtype == "I16") return convert<std::int16_t, T>(same);
+      if (dtype == "I8") return convert<std::int8_t, T>(same);
+      if (dtype == "U64") return convert<std::uint64_t, T>(same);
+      if (dtype == "U32") return convert<std::uint32_t, T>(same);
+      if (dtype == "U16") return convert<std::uint16_t, T>(same);
+      if (dtype == "U8" || dtype == "BOOL") return convert<std::uint8_t, T>(same);
+    }
+    throw Error("a tensor of type ", dtype, " was asked for ",
+                std::is_floating_point_v<T> ? "floating-point" : "whole", " numbers");
+  }
+
+  friend bool operator==(const SafeTensor&, const SafeTensor&) = default;
+
+ private:
+  template <class T>
+  static const char* dtype_of() {
+    if constexpr (std::is_same_v<T, double>) return "F64";
+    if constexpr (std::is_same_v<T, float>) return "F32";
+    if constexpr (std::is_same_v<T, std::int64_t>) return "I64";
+    if constexpr (std::is_same_v<T, std::int32_t>) return "I32";
+    if constexpr (std::is_same_v<T, std::uint8_t>) return "U8";
+  }
+
+  template <class Stored, class T, class Widen>
+  std::vector<T> convert(Widen widen) const {
+    const std::size_t n = count();
+    require(data.size() == n * sizeof(Stored), "a tensor of type ", dtype, " and shape ", shape_text(shape),
+            " has ", data.size(), " bytes, expected ", n * sizeof(Stored));
+    std::vector<T> values(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      Stored stored;
+      std::memcpy(&stored, data.data() + i * sizeof(Stored), sizeof(Stored));
+      const auto wide = widen(stored);
+      bool fits = true;
+      if constexpr (std::is_floating_point_v<T>)
+        fits = !std::isfinite(wide) || std::abs(wide) <= std::numeric_limits<T>::max();
+      else
+        fits = std::in_range<T>(wide);
+      require(fits, "number ", i, " of a tensor of type ", dtype, " is ", +wide,
+              ", too large for what was asked for");
+      values[i] = static_cast<T>(wide);
+    }
+    return values;
+  }
+};
+
+/// The content of one safetensors file.
+class SafeTensors {
+ public:
+  std::map<std::string, SafeTensor> tensors;
+  std::map<std::string, std::string> metadata;
+
+  /// Reads a whole file. Throws Error, naming the file and what is wrong with it, unless the file keeps to
+  /// the format in every respect; memory is taken only for what the file really holds.
+  static SafeTensors read(const std::filesystem::path& path);
+
+  /// Writes a whole file: beside `path` first, then renamed, so that nobody ever sees half of it. Equal
+  /// content gives equal bytes: tensors stand in the order of their names. Throws Error.
+  void write(const std::filesystem::path& path) const;
+
+  /// The tensor called `name`. Throws Error where there is none.
+  const SafeTensor& at(const std::string& name) const {
+    const auto found = tensors.find(name);
+    require(found != tensors.end(), "there is no tensor \"", name, "\" among the ", tensors.size(),
+            " of the file");
+    return found->second;
+  }
+};
+
+inline SafeTensors SafeTensors::read(const std::filesystem::path& path) {
+  constexpr std::uint64_t largest_header = 100'000'000;
+  const std::string where = path.string();
+  std::error_code error;
+  require(std::filesystem::is_regular_file(path, error), where, ": no such file",
+          std::filesystem::exists(path, error) ? " (it is something else)" : "");
+  const std::uint64_t size = std::filesystem::file_size(path, error);
+  std::ifstream file(path, std::ios::binary);
+  require(!error && file.is_open(), where, ": cannot be opened: ", std::strerror(errno));
+  const auto fetch = [&](void* to, std::size_t bytes) {
+    file.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes));
+    require(static_cast<std::size_t>(file.gcount()) == bytes, where, ": cannot be read to its end");
+  };
+
+  std::uint64_t length = 0;
+  require(size >= sizeof(length), where, ": ", size, " bytes are too few for a safetensors file");
+  fetch(&length, sizeof(length));
+  require(length > 0, where, ": the header has length 0; is this a safetensors file?");
+  require(length <= largest_header, where, ": the header claims ", length, " bytes, more than the ",
+          largest_header, " that the format allows; is this a safetensors file?");
+  require(length <= size - sizeof(length), where, ": the header claims ", length, " bytes, but only ",
+          size - sizeof(length), " follow; the file was cut short or is not a safetensors file");
+  std::string text(length, '\0');
+  fetch(text.data(), text.size());
+  const std::uint64_t data_begin = sizeof(length) + length;
+  SafeTensorsHeader header = parse_safetensors_header(text, size - data_begin, where);
+
+  SafeTensors content;
+  content.metadata = std::move(header.metadata);
+  for (auto& [name, entry] : header.entries) {
+    SafeTensor& tensor = content.tensors[name];
+    tensor.dtype = std::move(entry.dtype);
+    tensor.shape = std::move(entry.shape);
+    tensor.data.resize(entry.offsets[1] - entry.offsets[0]);
+    file.seekg(static_cast<std::streamoff>(data_begin + entry.offsets[0]));
+    fetch(tensor.data.data(), tensor.data.size());
+  }
+  return content;
+}
+
+inline void SafeTensors::write(const std::filesystem::path& path) const {
+  const std::string where = path.string();
+  nlohmann::ordered_json header = nlohmann::ordered_json::object();
+  if (!metadata.empty()) header["__metadata__"] = metadata;
+  std::size_t at = 0;
+  for (const auto& [name, tensor] : tensors) {
+    require(name != "__metadata__", where, ": no tensor can be called __metadata__");
+    const std::size_t bytes =
+        tensor_bytes(tensor.dtype, tensor.shape, concat(where, ": tensor \"", name, "\""));
+    require(tensor.data.size() == bytes, where, ": tensor \"", name, "\" of type ", tensor.dtype,
+            " and shape ", shape_text(tensor.shape), " has ", tensor.data.size(), " bytes of data, expected ",
+            bytes);
+    header[name] = {{"dtype", tensor.dtype}, {"shape", tensor.shape}, {"data_offsets", {at, at + bytes}}};
+    at += bytes;
+  }
+  std::string text;
+  try {
+    text = header.dump();
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(where, ": a tensor's name or the metadata is not UTF-8: ", error.what());
+  }
+  text.resize((text.size() + 7) / 8 * 8, ' ');  // so that the data begin at a multiple of 8
+
+  AtomicFile file(path);
+  const std::uint64_t length = text.size();
+  file.write(&length, sizeof(length));
+  file.write(text);
+  for (const auto& [name, tensor] : tensors) file.write(tensor.data.data(), tensor.data.size());
+  file.commit();
+}
+
+}  // namespace motiongan::io
