@@ -266,3 +266,21 @@ TEST_CASE("safetensors: a write that fails leaves the old file as it was") {
   CHECK_THROWS_AS(good.write(folder.path / "taken"), Error);
   CHECK_FALSE(fs::exists(folder.path / "taken.tmp"));
 }
+
+TEST_CASE("safetensors: every whole type is read with its sign") {
+  const auto tensor = [](const char* dtype, std::vector<unsigned char> bytes) {
+    SafeTensor t{dtype, {1}, {}};
+    for (const unsigned char b : bytes) t.data.push_back(std::byte{b});
+    return t;
+  };
+  CHECK(tensor("I8", {0x80}).as<std::int64_t>()[0] == -128);
+  CHECK(tensor("U8", {0x80}).as<std::int64_t>()[0] == 128);
+  CHECK(tensor("BOOL", {1}).as<int>()[0] == 1);
+  CHECK(tensor("I16", {0xfe, 0xff}).as<int>()[0] == -2);
+  CHECK(tensor("U16", {0xfe, 0xff}).as<int>()[0] == 65534);
+  CHECK(tensor("I32", {0xfd, 0xff, 0xff, 0xff}).as<int>()[0] == -3);
+  CHECK(tensor("U32", {0xfd, 0xff, 0xff, 0xff}).as<std::int64_t>()[0] == 4294967293);
+  CHECK_THROWS_AS(tensor("U32", {0xfd, 0xff, 0xff, 0xff}).as<int>(), Error);
+  CHECK_THROWS_AS(tensor("U64", std::vector<unsigned char>(8, 0xff)).as<std::int64_t>(), Error);
+  CHECK_THROWS_AS(tensor("I32", {1, 2}).as<int>(), Error);
+}

@@ -73,7 +73,7 @@ struct SafeTensor {
       if (dtype == "F16") return convert<std::uint16_t, T>(half_to_float);
       if (dtype == "BF16") return convert<std::uint16_t, T>(bfloat_to_float);
     } else {
-      const auto same = [](auto v) { return v; };
+      const auto same = [](auto v) { return +v; };  // small types become int
       if (dtype == "I64") return convert<std::int64_t, T>(same);
       if (dtype == "I32") return convert<std::int32_t, T>(same);
       if (dtype == "I16") return convert<std::int16_t, T>(same);
