@@ -1,0 +1,138 @@
+// A Var is a tensor in a graph of operations. An operation records its inputs and a rule that turns the
+// gradient of its output into gradients of its inputs. The rule is written in Vars, so a gradient can be
+// differentiated again.
+#pragma once
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "../core/tensor.hpp"
+
+namespace motiongan {
+
+class Var;
+struct Node;
+
+/// Which inputs of an operation need a gradient; the others' are not computed.
+using Needs = std::vector<bool>;
+
+/// Vector-Jacobian product: gradient of the output in, gradients of the inputs out (an empty Var means zero).
+using Vjp = std::function<std::vector<Var>(const Node& self, const Var& gradient, const Needs& needs)>;
+
+/// A value in the graph; copies mean the same value.
+class Var {
+ public:
+  Var() = default;
+  explicit Var(std::shared_ptr<Node> node) : node_(std::move(node)) {}
+
+  /// A value that no gradient is wanted for.
+  static Var constant(Tensor value);
+  /// A leaf that gradients are wanted for: a parameter, or an input to differentiate by.
+  static Var leaf(Tensor value);
+
+  bool empty() const { return node_ == nullptr; }
+  const Tensor& value() const;
+  const Shape& shape() const { return value().shape(); }
+  std::size_t dim(std::size_t i) const { return value().dim(i); }
+  std::size_t size() const { return value().size(); }
+  const Context& context() const { return value().context(); }
+  bool requires_grad() const;
+  /// The same value, cut from the graph.
+  Var detach() const { return constant(value()); }
+  double item() const { return value().item(); }
+
+  const std::shared_ptr<Node>& node() const { return node_; }
+
+ private:
+  friend struct Node;
+  std::shared_ptr<Node> node_;
+};
+
+/// One value and how it was made.
+struct Node : std::enable_shared_from_this<Node> {
+  Tensor value;
+  std::vector<Var> inputs;  ///< empty for leaves and constants
+  Vjp vjp;
+  const char* operation = "constant";
+  bool requires_grad = false;
+  std::size_t id = next_id();  ///< grows with creation: inputs have smaller ids than what is made of them
+
+  Node() = default;
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+  ~Node() {
+    // Iterative: the chain of an LSTM over many steps would overflow the stack.
+    std::vector<std::shared_ptr<Node>> doomed;
+    const auto take_inputs = [&doomed](Node& node) {
+      for (Var& input : node.inputs)
+        if (input.node_ && input.node_.use_count() == 1) doomed.push_back(std::move(input.node_));
+      node.inputs.clear();
+    };
+    take_inputs(*this);
+    while (!doomed.empty()) {
+      const std::shared_ptr<Node> node = std::move(doomed.back());
+      doomed.pop_back();
+      take_inputs(*node);
+    }
+  }
+
+ private:
+  static std::size_t next_id() {
+    static std::atomic<std::size_t> counter{0};
+    return ++counter;
+  }
+};
+
+inline const Tensor& Var::value() const {
+  require(node_ != nullptr, "an empty Var has no value");
+  return node_->value;
+}
+inline bool Var::requires_grad() const { return node_ && node_->requires_grad; }
+
+inline Var Var::constant(Tensor value) {
+  auto node = std::make_shared<Node>();
+  node->value = std::move(value);
+  return Var(std::move(node));
+}
+inline Var Var::leaf(Tensor value) {
+  Var var = constant(std::move(value));
+  var.node_->operation = "leaf";
+  var.node_->requires_grad = true;
+  return var;
+}
+
+namespace detail {
+inline bool& recording() {
+  thread_local bool on = true;
+  return on;
+}
+}  // namespace detail
+
+/// While one lives, operations of this thread compute values only: nothing is recorded.
+class NoGrad {
+ public:
+  explicit NoGrad(bool off = true) : before_(detail::recording()) { detail::recording() = before_ && !off; }
+  ~NoGrad() { detail::recording() = before_; }
+  NoGrad(const NoGrad&) = delete;
+  NoGrad& operator=(const NoGrad&) = delete;
+
+ private:
+  bool before_;
+};
+
+/// Makes the result of an operation: `value`, computed from `inputs` (some may be empty), with its
+/// derivative. Records nothing where no input needs a gradient or NoGrad is in force.
+inline Var record(const char* operation, std::vector<Var> inputs, Tensor value, Vjp vjp) {
+  Var out = Var::constant(std::move(value));
+  if (!detail::recording()) return out;
+  for (const Var& input : inputs) out.node()->requires_grad |= input.requires_grad();
+  if (!out.requires_grad()) return out;
+  out.node()->operation = operation;
+  out.node()->inputs = std::move(inputs);
+  out.node()->vjp = std::move(vjp);
+  return out;
+}
+
+}  // namespace motiongan

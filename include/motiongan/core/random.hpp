@@ -1,0 +1,102 @@
+// Philox 4x32-10 on the host, equal bit for bit to cl/random.cl, and the keys of every random number of the
+// library.
+#pragma once
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "tensor.hpp"
+
+namespace motiongan {
+
+using PhiloxWords = std::array<std::uint32_t, 4>;
+
+/// Ten rounds of Philox 4x32 (Salmon et al. 2011): four random words for a 128-bit counter and a 64-bit key.
+inline PhiloxWords philox(PhiloxWords counter, std::uint64_t seed) {
+  auto key0 = static_cast<std::uint32_t>(seed), key1 = static_cast<std::uint32_t>(seed >> 32);
+  for (int round = 0; round < 10; ++round) {
+    const std::uint64_t product0 = std::uint64_t{0xD2511F53u} * counter[0],
+                        product1 = std::uint64_t{0xCD9E8D57u} * counter[2];
+    counter = {
+        static_cast<std::uint32_t>(product1 >> 32) ^ counter[1] ^ key0, static_cast<std::uint32_t>(product1),
+        static_cast<std::uint32_t>(product0 >> 32) ^ counter[3] ^ key1, static_cast<std::uint32_t>(product0)};
+    key0 += 0x9E3779B9u;
+    key1 += 0xBB67AE85u;
+  }
+  return counter;
+}
+
+/// What a random number is for. Together with the seed, the training step, the sample and the position it
+/// names the number: nothing else influences it. Noise of the generator's level i is noise + i.
+enum class Stream : std::uint32_t {
+  weights = 1,
+  windows = 2,
+  captions = 3,
+  cut = 4,
+  shift = 5,
+  mix = 6,
+  noise = 32
+};
+
+inline Stream operator+(Stream stream, std::size_t level) {
+  return static_cast<Stream>(static_cast<std::uint32_t>(stream) + static_cast<std::uint32_t>(level));
+}
+
+/// Names one array of random numbers: (seed, stream, step), and the number of its first sample.
+struct RandomKey {
+  std::uint64_t seed = 0;
+  Stream stream = Stream::noise;
+  std::uint32_t step = 0;  ///< at most 2^24 - 1; the stream fills the low 8 bits of the same word
+  std::uint32_t first_sample = 0;
+  std::uint32_t first_frame = 0;
+
+  RandomKey with(Stream other) const {
+    RandomKey key = *this;
+    key.stream = other;
+    return key;
+  }
+  cl_uint seed_low() const { return static_cast<cl_uint>(seed); }
+  cl_uint seed_high() const { return static_cast<cl_uint>(seed >> 32); }
+};
+
+/// One word of a key's array, on the host: `sample` and `position` count as on the device.
+inline std::uint32_t random_word(const RandomKey& key, std::uint32_t sample, std::uint32_t position = 0) {
+  return philox(
+      {position, 0, key.first_sample + sample, static_cast<std::uint32_t>(key.stream) ^ (key.step << 8)},
+      key.seed)[0];
+}
+/// A whole number below `count`.
+inline std::size_t random_below(const RandomKey& key, std::uint32_t sample, std::size_t count,
+                                std::uint32_t position = 0) {
+  return static_cast<std::size_t>((std::uint64_t{random_word(key, sample, position)} * count) >> 32);
+}
+
+/// Standard normal numbers, [frames, batch, channels].
+inline Tensor random_normal(const Context& context, const RandomKey& key, std::size_t frames,
+                            std::size_t batch, std::size_t channels) {
+  Tensor out(context, {frames, batch, channels});
+  context.launch("random", "random_normal", Grid::items(frames * batch * ((channels + 63) / 64)), out, frames,
+                 batch, channels, key.seed_low(), key.seed_high(), static_cast<cl_uint>(key.stream), key.step,
+                 key.first_sample, key.first_frame);
+  return out;
+}
+
+/// One uniform number of (0, 1) per sample, [batch].
+inline Tensor random_uniform(const Context& context, const RandomKey& key, std::size_t batch) {
+  Tensor out(context, {batch});
+  context.launch("random", "random_uniform", Grid::items(batch), out, batch, key.seed_low(), key.seed_high(),
+                 static_cast<cl_uint>(key.stream), key.step, key.first_sample);
+  return out;
+}
+
+/// One whole number of [low, low + count) per sample.
+inline Indices random_integers(const Context& context, const RandomKey& key, std::size_t batch, int low,
+                               std::size_t count) {
+  Indices out(context, batch);
+  context.launch("random", "random_integers", Grid::items(batch), out, batch, static_cast<cl_int>(low), count,
+                 key.seed_low(), key.seed_high(), static_cast<cl_uint>(key.stream), key.step,
+                 key.first_sample);
+  return out;
+}
+
+}  // namespace motiongan

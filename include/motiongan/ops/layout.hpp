@@ -1,0 +1,181 @@
+// Cutting, joining and moving rows and frames, with their derivatives.
+#pragma once
+#include "reduce.hpp"
+
+namespace motiongan {
+
+/// The same numbers under another shape.
+inline Var reshape(const Var& x, Shape shape) {
+  return record("reshape", {x}, x.value().reshape(std::move(shape)),
+                [](const Node& self, const Var& g, const Needs&) -> std::vector<Var> {
+                  return {reshape(g, self.inputs[0].shape())};
+                });
+}
+
+namespace detail {
+
+/// A tensor seen as [outer, count, inner] around one axis.
+struct AxisView {
+  std::size_t outer = 1, count = 1, inner = 1;
+  AxisView(const Shape& shape, std::size_t axis) : count(shape.at(axis)) {
+    for (std::size_t i = 0; i < shape.size(); ++i) (i < axis ? outer : inner) *= i == axis ? 1 : shape[i];
+  }
+};
+
+/// Copies `run` numbers from each of `outer` blocks of x (from `first` on, `stride` apart) to blocks of out.
+inline void copy_runs(const Tensor& x, std::size_t x_first, std::size_t x_stride, const Tensor& out,
+                      std::size_t out_first, std::size_t out_stride, std::size_t outer, std::size_t run) {
+  const Context& context = x.context();
+  context.launch("layout", "copy_runs", Grid::items(outer * vectors(context, run)),
+                 x.view(x_first, {x.size() - x_first}), x_stride,
+                 out.view(out_first, {out.size() - out_first}), out_stride, outer, run, std::size_t{0});
+}
+
+}  // namespace detail
+
+inline Var pad(const Var& x, std::size_t axis, std::size_t before, std::size_t after);
+
+/// `count` entries of an axis from `first` on.
+inline Var slice(const Var& x, std::size_t axis, std::size_t first, std::size_t count) {
+  const detail::AxisView view(x.shape(), axis);
+  require(first + count <= view.count, "slice: ", count, " entries from ", first, " of axis ", axis, " of ",
+          to_string(x.shape()));
+  Shape shape = x.shape();
+  shape[axis] = count;
+  Tensor value;
+  if (view.outer == 1) {  // contiguous: no copy
+    value = x.value().view(first * view.inner, shape);
+  } else {
+    value = Tensor(x.context(), shape);
+    detail::copy_runs(x.value(), first * view.inner, view.count * view.inner, value, 0, count * view.inner,
+                      view.outer, count * view.inner);
+  }
+  return record("slice", {x}, std::move(value),
+                [=, total = view.count](const Node&, const Var& g, const Needs&) -> std::vector<Var> {
+                  return {pad(g, axis, first, total - first - count)};
+                });
+}
+
+/// Zeros before and after along an axis.
+inline Var pad(const Var& x, std::size_t axis, std::size_t before, std::size_t after) {
+  if (before + after == 0) return x;
+  const detail::AxisView view(x.shape(), axis);
+  Shape shape = x.shape();
+  shape[axis] += before + after;
+  Tensor value = filled(x.context(), shape, 0);
+  detail::copy_runs(x.value(), 0, view.count * view.inner, value, before * view.inner,
+                    shape[axis] * view.inner, view.outer, view.count * view.inner);
+  return record("pad", {x}, std::move(value),
+                [=, count = view.count](const Node&, const Var& g, const Needs&) -> std::vector<Var> {
+                  return {slice(g, axis, before, count)};
+                });
+}
+
+/// Joins tensors along an axis; their other sizes are equal.
+inline Var concat_axis(const std::vector<Var>& parts, std::size_t axis) {
+  require(!parts.empty(), "concat_axis: nothing to join");
+  Shape shape = parts[0].shape();
+  shape.at(axis) = 0;
+  for (const Var& part : parts) {
+    Shape rest = part.shape();
+    require(rest.size() == shape.size(), "concat_axis: ranks differ");
+    shape[axis] += rest[axis];
+    rest[axis] = shape[axis];
+    require(rest == shape, "concat_axis: ", to_string(part.shape()), " does not fit the others along axis ",
+            axis);
+  }
+  Tensor value(parts[0].context(), shape);
+  std::size_t first = 0;
+  for (const Var& part : parts) {
+    const detail::AxisView view(part.shape(), axis);
+    const std::size_t run = view.count * view.inner;
+    detail::copy_runs(part.value(), 0, run, value, first * view.inner, shape[axis] * view.inner, view.outer,
+                      run);
+    first += view.count;
+  }
+  return record("concat", parts, std::move(value),
+                [axis](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
+                  std::vector<Var> gradients;
+                  std::size_t at = 0;
+                  for (std::size_t i = 0; i < self.inputs.size(); ++i) {
+                    const std::size_t count = self.inputs[i].dim(axis);
+                    gradients.push_back(needs[i] ? slice(g, axis, at, count) : Var());
+                    at += count;
+                  }
+                  return gradients;
+                });
+}
+
+/// Moves each sample's frames: out[t, b, :] = x[t + sign*offset[b], b, :], zero where there is no such frame.
+/// x is [T, B, C], offset [B], the result [frames_out, B, C]. Serves the input shift and the final cut (SPEC
+/// 2, 3).
+inline Var shift_frames(const Var& x, const Indices& offset, std::size_t frames_out, int sign = 1) {
+  require(x.value().rank() == 3 && offset.size() == x.dim(1), "shift_frames: ", offset.size(),
+          " offsets for motion ", to_string(x.shape()));
+  const std::size_t frames_in = x.dim(0), batch = x.dim(1), channels = x.dim(2);
+  Tensor value(x.context(), {frames_out, batch, channels});
+  x.context().launch("layout", "shift_frames",
+                     Grid::items(frames_out * batch * detail::vectors(x.context(), channels)), x.value(),
+                     offset, value, frames_in, frames_out, batch, channels, static_cast<cl_int>(sign));
+  return record("shift_frames", {x}, std::move(value),
+                [=](const Node&, const Var& g, const Needs&) -> std::vector<Var> {
+                  return {shift_frames(g, offset, frames_in, -sign)};
+                });
+}
+
+inline Var pair_means_adjoint(const Var& g, std::size_t frames);
+
+/// Means of neighbouring frames, first the odd pairs (2t-1, 2t), t = 0..T/2, then the even ones (2t, 2t+1), t
+/// < T/2: [T, B, C] -> [2*(T/2)+1, B, C]. The even ones are `Down`; both together are what a convolution
+/// followed by Down needs.
+inline Var pair_means(const Var& x) {
+  const std::size_t frames = x.dim(0), slab = x.size() / frames;
+  Shape shape = x.shape();
+  shape[0] = 2 * (frames / 2) + 1;
+  Tensor value(x.context(), shape);
+  x.context().launch("layout", "pair_means", Grid::items(shape[0] * detail::vectors(x.context(), slab)),
+                     x.value(), value, frames, slab);
+  return record("pair_means", {x}, std::move(value),
+                [frames](const Node&, const Var& g, const Needs&) -> std::vector<Var> {
+                  return {pair_means_adjoint(g, frames)};
+                });
+}
+
+inline Var pair_means_adjoint(const Var& g, std::size_t frames) {
+  Shape shape = g.shape();
+  const std::size_t slab = g.size() / shape[0];
+  shape[0] = frames;
+  Tensor value(g.context(), shape);
+  g.context().launch("layout", "pair_means_adjoint", Grid::items(frames * detail::vectors(g.context(), slab)),
+                     g.value(), value, frames, slab);
+  return record("pair_means_adjoint", {g}, std::move(value),
+                [](const Node&, const Var& u, const Needs&) -> std::vector<Var> { return {pair_means(u)}; });
+}
+
+inline Var scatter_add_rows(const Var& x, const Indices& index, std::size_t rows);
+
+/// Rows of a table by index: [V, C], n indices -> [n, C].
+inline Var gather_rows(const Var& table, const Indices& index) {
+  const std::size_t rows = table.dim(0), channels = table.dim(1);
+  Tensor value(table.context(), {index.size(), channels});
+  table.context().launch("layout", "gather_rows",
+                         Grid::items(index.size() * detail::vectors(table.context(), channels)),
+                         table.value(), index, value, index.size(), channels);
+  return record("gather_rows", {table}, std::move(value),
+                [=](const Node&, const Var& g, const Needs&) -> std::vector<Var> {
+                  return {scatter_add_rows(g, index, rows)};
+                });
+}
+
+/// The adjoint of gather_rows: rows with the same index are added, in their order. [n, C] -> [rows, C].
+inline Var scatter_add_rows(const Var& x, const Indices& index, std::size_t rows) {
+  const std::size_t channels = x.dim(1);
+  Tensor value(x.context(), {rows, channels});
+  x.context().launch("layout", "scatter_add_rows", Grid::items(rows * detail::vectors(x.context(), channels)),
+                     x.value(), index, value, x.dim(0), rows, channels);
+  return record(
+      "scatter_add_rows", {x}, std::move(value),
+      [=](const Node&, const Var& g, const Needs&) -> std::vector<Var> { return {gather_rows(g, index)}; });
+}
+
+}  // namespace motiongan

@@ -1,0 +1,185 @@
+// Convolution along time as a sum of matrix products with shifted rows, and linear layers as its one-tap
+// case.
+//
+//   y[t] = sum_s x[t + offset_s] * op(W_s),   frames outside x count as zero
+//
+// In a time-major tensor [T, B, C] frame t is a block of B rows, so each term is one product over whole
+// frames and no patch is ever copied. The family is closed under differentiation: the gradient by x is the
+// same sum with opposite offsets and the other op, the gradient by W is `taps_weight`, whose own gradients
+// are sums of taps again.
+#pragma once
+#include "../core/gemm.hpp"
+#include "layout.hpp"
+
+namespace motiongan {
+
+using Offsets = std::vector<int>;
+
+inline Offsets operator-(Offsets offsets) {
+  for (int& offset : offsets) offset = -offset;
+  return offsets;
+}
+
+namespace detail {
+
+/// A run of output frames [first, last) that the same taps reach.
+struct TapRange {
+  std::size_t first, last;
+  std::vector<std::size_t> taps;
+};
+
+/// Splits the output frames 0..frames_out at the frames where a tap enters or leaves x.
+inline std::vector<TapRange> tap_ranges(const Offsets& offsets, std::size_t frames_in,
+                                        std::size_t frames_out) {
+  const auto in = static_cast<long>(frames_in), out = static_cast<long>(frames_out);
+  std::vector<long> bounds{0, out};
+  for (int offset : offsets) {
+    bounds.push_back(std::clamp(-static_cast<long>(offset), 0L, out));
+    bounds.push_back(std::clamp(in - offset, 0L, out));
+  }
+  std::sort(bounds.begin(), bounds.end());
+  std::vector<TapRange> ranges;
+  for (std::size_t i = 0; i + 1 < bounds.size(); ++i) {
+    if (bounds[i] == bounds[i + 1]) continue;
+    TapRange range{static_cast<std::size_t>(bounds[i]), static_cast<std::size_t>(bounds[i + 1]), {}};
+    for (std::size_t s = 0; s < offsets.size(); ++s)
+      if (bounds[i] + offsets[s] >= 0 && bounds[i] + offsets[s] < in) range.taps.push_back(s);
+    ranges.push_back(std::move(range));
+  }
+  return ranges;
+}
+
+/// What follows the sum: + bias + residual, then ReLU.
+struct Epilogue {
+  Tensor bias, residual;
+  bool relu = false;
+};
+
+inline Tensor taps_value(const Tensor& x, const Tensor& w, const Offsets& offsets, std::size_t frames_out,
+                         bool transposed, const Epilogue& epilogue) {
+  const std::size_t frames_in = x.dim(0), in = x.shape().back(), rows = x.size() / frames_in / in;
+  const std::size_t out = transposed ? w.dim(2) : w.dim(1), tap_size = w.dim(1) * w.dim(2);
+  Shape shape = x.shape();
+  shape.front() = frames_out;
+  shape.back() = out;
+  Tensor y(x.context(), shape);
+  constexpr std::size_t most = 4;  // segments of one gemm() call
+  for (const TapRange& range : tap_ranges(offsets, frames_in, frames_out)) {
+    std::size_t done = 0;
+    do {
+      GemmCall call;
+      call.segments = std::min(most, range.taps.size() - done);
+      call.m = (range.last - range.first) * rows;
+      call.n = out;
+      call.k = call.segments == 0 ? 0 : in;
+      call.a = x;
+      call.b = w;
+      call.c = y;
+      call.a_ld = in;
+      call.b_ld = w.dim(2);
+      call.c_ld = out;
+      call.b_transposed = !transposed;
+      for (std::size_t i = 0; i < call.segments; ++i) {
+        const std::size_t tap = range.taps[done + i];
+        call.a_offset[i] =
+            static_cast<std::size_t>(static_cast<long>(range.first) + offsets[tap]) * rows * in;
+        call.b_offset[i] = tap * tap_size;
+      }
+      call.segments = std::max<std::size_t>(call.segments, 1);
+      call.c_offset = range.first * rows * out;
+      call.accumulate = done > 0;
+      done += call.segments;
+      if (done >= range.taps.size()) {
+        call.bias = epilogue.bias;
+        call.residual = epilogue.residual;
+        call.residual_offset = call.c_offset;
+        call.residual_ld = out;
+        call.relu = epilogue.relu;
+      }
+      gemm(x.context(), call);
+    } while (done < range.taps.size());
+  }
+  return y;
+}
+
+/// W_s[i, j] = sum over frames t and rows of p[t, i] * q[t + offset_s, j].
+inline Tensor taps_weight_value(const Tensor& p, const Tensor& q, const Offsets& offsets) {
+  const std::size_t p_frames = p.dim(0), q_frames = q.dim(0), m = p.shape().back(), n = q.shape().back(),
+                    rows = p.size() / p_frames / m;
+  Tensor w(p.context(), {offsets.size(), m, n});
+  for (std::size_t s = 0; s < offsets.size(); ++s) {
+    const long first = std::max(0L, -static_cast<long>(offsets[s]));
+    const long last = std::min(static_cast<long>(p_frames), static_cast<long>(q_frames) - offsets[s]);
+    const std::size_t frames = last > first ? static_cast<std::size_t>(last - first) : 0;
+    GemmCall call;
+    call.m = m;
+    call.n = n;
+    call.k = frames * rows;
+    call.a = p;
+    call.b = q;
+    call.c = w;
+    call.a_ld = m;
+    call.b_ld = call.c_ld = n;
+    call.a_transposed = true;
+    if (frames > 0) {
+      call.a_offset[0] = static_cast<std::size_t>(first) * rows * m;
+      call.b_offset[0] = static_cast<std::size_t>(first + offsets[s]) * rows * n;
+    }
+    call.c_offset = s * m * n;
+    gemm(p.context(), call);
+  }
+  return w;
+}
+
+}  // namespace detail
+
+inline Var taps_weight(const Var& p, const Var& q, const Offsets& offsets);
+
+/// What `taps` adds to the sum; all optional.
+struct TapsExtras {
+  Var bias = {};      ///< [out]
+  Var residual = {};  ///< like the result
+  bool relu = false;
+};
+
+/// y[t] = sum_s x[t + offset_s] * op(W_s) + bias + residual, then ReLU if asked. x is [T, ..., in], W [taps,
+/// out, in] (op transposes) or, `transposed`, [taps, in, out]; y is [frames_out, ..., out].
+inline Var taps(const Var& x, const Var& w, const Offsets& offsets, std::size_t frames_out,
+                bool transposed = false, const TapsExtras& extras = {}) {
+  require(w.value().rank() == 3 && w.dim(0) == offsets.size(), "taps: weights ", to_string(w.shape()),
+          " for ", offsets.size(), " taps");
+  require(x.shape().back() == w.dim(transposed ? 1 : 2), "taps: input ", to_string(x.shape()),
+          " does not fit weights ", to_string(w.shape()));
+  detail::Epilogue epilogue;
+  if (!extras.bias.empty()) epilogue.bias = extras.bias.value();
+  if (!extras.residual.empty()) epilogue.residual = extras.residual.value();
+  epilogue.relu = extras.relu;
+  Tensor y = detail::taps_value(x.value(), w.value(), offsets, frames_out, transposed, epilogue);
+  const bool relu = extras.relu;
+  return record("taps", {x, w, extras.bias, extras.residual}, std::move(y),
+                [=](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
+                  const Var &xi = self.inputs[0], &wi = self.inputs[1];
+                  const Var masked = relu ? detail::leaky_relu_grad(g, self.value, 0) : g;
+                  Var by_x, by_w, by_bias;
+                  if (needs[0]) by_x = taps(masked, wi, -offsets, xi.dim(0), !transposed);
+                  if (needs[1])
+                    by_w = transposed ? taps_weight(xi, masked, -offsets) : taps_weight(masked, xi, offsets);
+                  if (needs[2])
+                    by_bias = sum_middle(masked, 1, masked.size() / masked.shape().back(),
+                                         masked.shape().back(), 1, self.inputs[2].shape());
+                  return {by_x, by_w, by_bias, masked};
+                });
+}
+
+/// W_s[i, j] = sum over t of p[t, i] * q[t + offset_s, j]: the gradient of `taps` by its weights. [taps, P,
+/// Q]
+inline Var taps_weight(const Var& p, const Var& q, const Offsets& offsets) {
+  return record("taps_weight", {p, q}, detail::taps_weight_value(p.value(), q.value(), offsets),
+                [offsets](const Node& self, const Var& u, const Needs& needs) -> std::vector<Var> {
+                  const Var &pi = self.inputs[0], &qi = self.inputs[1];
+                  return {needs[0] ? taps(qi, u, offsets, pi.dim(0)) : Var(),
+                          needs[1] ? taps(pi, u, -offsets, qi.dim(0), true) : Var()};
+                });
+}
+
+}  // namespace motiongan
