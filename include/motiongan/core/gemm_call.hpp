@@ -1,0 +1,90 @@
+// What a matrix product is given, and the checks that it lies inside its tensors.
+#pragma once
+#include <array>
+#include <limits>
+
+#include "tensor.hpp"
+
+namespace motiongan {
+
+/// One product, row-major everywhere:
+/// C[m,n] = epilogue((accumulate ? C : 0) + sum over segments s of A_s[m,k] * B_s[k,n]), for each of `batch`
+/// problems. C must not overlap A, B or the residual.
+struct GemmCall {
+  std::size_t m = 0, n = 0, k = 0;
+  /// Element (i, p) of A is at a_offset[s] + i * a_ld + p or, when a_transposed, at a_offset[s] + p * a_ld +
+  /// i. Element (p, j) of B is at b_offset[s] + p * b_ld + j or, when b_transposed, at b_offset[s] + j * b_ld
+  /// + p. Element (i, j) of C is at c_offset + i * c_ld + j.
+  Tensor a = {}, b = {}, c = {};
+  std::size_t a_ld = 0, b_ld = 0, c_ld = 0;  ///< distance of two stored rows, in elements
+  bool a_transposed = false, b_transposed = false;
+  std::size_t segments = 1;  ///< products that are summed, 1 to 4: the taps of a convolution
+  std::array<std::size_t, 4> a_offset{}, b_offset{};
+  std::size_t c_offset = 0;
+  std::size_t batch = 1, a_batch_stride = 0, b_batch_stride = 0, c_batch_stride = 0;
+  bool accumulate = false;  ///< start from what C holds
+  /// Applied to the sum in this order: + bias[j], + residual[residual_offset + i * residual_ld + j], ReLU.
+  Tensor bias = {}, residual = {};  ///< absent when empty; the same for every problem of the batch
+  std::size_t residual_offset = 0, residual_ld = 0;
+  bool relu = false;
+};
+
+namespace detail {
+
+// The flags of the kernels in cl/gemm.cl.
+constexpr cl_uint gemm_accumulate = 1, gemm_bias = 2, gemm_residual = 4, gemm_relu = 8;
+
+inline cl_uint gemm_flags(const GemmCall& g) {
+  return (g.accumulate ? gemm_accumulate : 0) | (g.bias.empty() ? 0 : gemm_bias) |
+         (g.residual.empty() ? 0 : gemm_residual) | (g.relu ? gemm_relu : 0);
+}
+
+inline std::string describe(const GemmCall& g) {
+  return concat("gemm m=", g.m, " n=", g.n, " k=", g.k, " a_ld=", g.a_ld,
+                g.a_transposed ? " (transposed)" : "", " b_ld=", g.b_ld,
+                g.b_transposed ? " (transposed)" : "", " c_ld=", g.c_ld, " segments=", g.segments,
+                " batch=", g.batch);
+}
+
+/// Refuses a matrix that does not lie inside its tensor.
+inline void check_matrix(const GemmCall& g, const char* name, const Tensor& tensor, std::size_t offset,
+                         std::size_t rows, std::size_t columns, std::size_t ld, std::size_t batch_stride) {
+  if (rows == 0 || columns == 0) return;
+  require(!tensor.empty(), describe(g), ": ", name, " is empty");
+  const std::size_t end = offset + (g.batch - 1) * batch_stride + (rows - 1) * ld + columns;
+  require(end <= tensor.size(), describe(g), ": ", name, " (", rows, " rows of ", columns,
+          ", leading dimension ", ld, ", offset ", offset, ", batch stride ", batch_stride, ") needs ", end,
+          " elements, its tensor ", to_string(tensor.shape()), " has ", tensor.size());
+  require(tensor.offset() + end <= std::numeric_limits<cl_uint>::max(), describe(g), ": ", name,
+          " is too large: kernels count elements in 32 bits; use a smaller batch or fewer frames");
+}
+
+inline void check_gemm(const Context& context, const GemmCall& g) {
+  require(g.segments >= 1 && g.segments <= 4, describe(g), ": segments must be 1 to 4");
+  for (std::size_t s = 0; s < g.segments; ++s) {
+    check_matrix(g, "A", g.a, g.a_offset[s], g.a_transposed ? g.k : g.m, g.a_transposed ? g.m : g.k, g.a_ld,
+                 g.a_batch_stride);
+    check_matrix(g, "B", g.b, g.b_offset[s], g.b_transposed ? g.n : g.k, g.b_transposed ? g.k : g.n, g.b_ld,
+                 g.b_batch_stride);
+  }
+  check_matrix(g, "C", g.c, g.c_offset, g.m, g.n, g.c_ld, g.c_batch_stride);
+  require(g.m <= 1 || g.c_ld >= g.n, describe(g), ": the rows of C overlap: c_ld must be at least n");
+  const std::size_t c_size = (g.m - 1) * g.c_ld + g.n;
+  require(g.batch <= 1 || g.c_batch_stride >= c_size || (g.m > 1 && g.c_batch_stride >= g.n) || g.m == 0,
+          describe(g), ": the problems of the batch overlap in C: c_batch_stride is ", g.c_batch_stride);
+  if (!g.bias.empty())
+    require(g.bias.size() == g.n, describe(g), ": bias has shape ", to_string(g.bias.shape()),
+            ", n elements expected");
+  if (!g.residual.empty() && g.m > 0) {
+    const std::size_t end = g.residual_offset + (g.m - 1) * g.residual_ld + g.n;
+    require(end <= g.residual.size(), describe(g), ": the residual (leading dimension ", g.residual_ld,
+            ", offset ", g.residual_offset, ") needs ", end, " elements, its tensor ",
+            to_string(g.residual.shape()), " has ", g.residual.size());
+  }
+  for (const Tensor* tensor : {&g.a, &g.b, &g.c, &g.bias, &g.residual})
+    require(tensor->empty() || tensor->context() == context, describe(g),
+            ": a tensor belongs to another context");
+}
+
+}  // namespace detail
+}  // namespace motiongan
