@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -14,6 +12,7 @@
 #include "motiongan/core/error.hpp"
 #include "motiongan/motion/bvh_cursor.hpp"
 #include "motiongan/motion/skeleton.hpp"
+#include "motiongan/motion/text_file.hpp"
 
 namespace motiongan::motion {
 
@@ -217,16 +216,7 @@ inline Clip parse_bvh(std::string_view text, std::string name) {
 
 /// Reads a BVH file; the clip's id is the file's name without folder and extension.
 inline Clip read_bvh(const std::filesystem::path& path) {
-  std::error_code problem;
-  require(std::filesystem::exists(path, problem), "BVH file ", path.string(), " does not exist");
-  require(!std::filesystem::is_directory(path, problem), path.string(), " is a folder, expected a BVH file");
-  std::ifstream in(path, std::ios::binary | std::ios::ate);
-  require(in.good(), "BVH file ", path.string(), " cannot be opened; is it readable?");
-  std::string text(static_cast<std::size_t>(std::max<std::streamoff>(in.tellg(), 0)), '\0');
-  in.seekg(0);
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  require(static_cast<std::size_t>(in.gcount()) == text.size(), "BVH file ", path.string(),
-          " cannot be read to its end");
+  const std::string text = read_text(path, "BVH file");
   Clip clip = parse_bvh(text, path.string());
   clip.id = path.stem().string();
   return clip;

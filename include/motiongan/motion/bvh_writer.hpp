@@ -7,16 +7,15 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/motion/bvh_reader.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/motion/skeleton.hpp"
+#include "motiongan/motion/text_file.hpp"
 
 namespace motiongan::motion {
 
@@ -115,30 +114,6 @@ inline std::string format_bvh(const Clip& clip) {
     out += '\n';
   }
   return out;
-}
-
-/// Writes `text` beside `path` and renames it, so that `path` never holds half a file.
-inline void write_text_atomically(const std::filesystem::path& path, std::string_view text) {
-  std::filesystem::path beside = path;
-  beside += ".tmp";
-  std::error_code problem;
-  {
-    std::ofstream out(beside, std::ios::binary | std::ios::trunc);
-    require(out.good(), "cannot write ", beside.string(), "; does its folder exist and may you write there?");
-    out.write(text.data(), static_cast<std::streamsize>(text.size()));
-    out.flush();
-    if (!out.good()) {
-      out.close();
-      std::filesystem::remove(beside, problem);
-      throw Error("writing ", text.size(), " bytes to ", beside.string(), " failed; is the disk full?");
-    }
-  }
-  std::filesystem::rename(beside, path, problem);
-  if (problem) {
-    std::error_code ignored;
-    std::filesystem::remove(beside, ignored);
-    throw Error("cannot rename ", beside.string(), " to ", path.string(), ": ", problem.message());
-  }
 }
 
 inline void write_bvh(const std::filesystem::path& path, const Clip& clip) {

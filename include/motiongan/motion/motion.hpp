@@ -145,47 +145,4 @@ inline Motion slice(const Motion& motion, std::size_t first, std::size_t count) 
   return out;
 }
 
-/// What to do with a clip's first frame, which in the CMU conversions is an added T-pose.
-enum class FirstFrame {
-  automatic,  ///< drop it if it is a T-pose by starts_with_t_pose
-  keep,
-  drop
-};
-
-/// Whether frame 0 is a pose that was put in front of the motion: every rotation in it is a whole number of
-/// degrees and most are zero (the CMU files' is zero but for seven joint angles such as 21), frame 1's are
-/// not, and the step from frame 0 to 1 is a jump: over a degree, and over three times the step from 1 to 2.
-inline bool starts_with_t_pose(const Clip& clip) {
-  const std::size_t width = clip.skeleton.channel_count();
-  if (clip.frames < 2 || clip.channels.size() < 2 * width) return false;
-  std::size_t turns = 0, zeros = 0, at = 0;
-  bool whole_next = true;
-  double jump = 0, step = 0;
-  const auto moved = [](double a, double b) { return std::abs(std::remainder(a - b, 360.0)); };
-  for (const Joint& joint : clip.skeleton.joints) {
-    for (const Channel c : joint.channels) {
-      const std::size_t i = at++;
-      if (!is_rotation(c)) continue;
-      const double first = clip.channels[i], second = clip.channels[width + i];
-      if (first != std::round(first)) return false;
-      ++turns;
-      zeros += first == 0;
-      whole_next = whole_next && second == std::round(second);
-      jump = std::max(jump, moved(first, second));
-      if (clip.frames > 2) step = std::max(step, moved(second, clip.channels[2 * width + i]));
-    }
-  }
-  return 2 * zeros > turns && !whole_next && jump > 1 && jump > 3 * step;
-}
-
-/// Removes frame 0 where `rule` asks for it; returns whether it did.
-inline bool drop_first_frame(Clip& clip, FirstFrame rule) {
-  if (rule == FirstFrame::keep || clip.frames == 0) return false;
-  if (rule == FirstFrame::automatic && !starts_with_t_pose(clip)) return false;
-  clip.channels.erase(clip.channels.begin(),
-                      clip.channels.begin() + static_cast<std::ptrdiff_t>(clip.skeleton.channel_count()));
-  --clip.frames;
-  return true;
-}
-
 }  // namespace motiongan::motion

@@ -1,0 +1,79 @@
+// Whole text files, read and written so that nothing is lost half way.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "motiongan/core/error.hpp"
+
+namespace motiongan::motion {
+
+/// All bytes of a file. `kind` is what messages call it, such as "BVH file".
+inline std::string read_text(const std::filesystem::path& path, std::string_view kind) {
+  std::error_code problem;
+  require(std::filesystem::exists(path, problem), kind, " ", path.string(), " does not exist");
+  require(!std::filesystem::is_directory(path, problem), path.string(), " is a folder, expected a ", kind);
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  require(in.good(), kind, " ", path.string(), " cannot be opened; is it readable?");
+  std::string text(static_cast<std::size_t>(std::max<std::streamoff>(in.tellg(), 0)), '\0');
+  in.seekg(0);
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  require(static_cast<std::size_t>(in.gcount()) == text.size(), kind, " ", path.string(),
+          " cannot be read to its end");
+  return text;
+}
+
+/// Writes `text` beside `path` and renames it, so that `path` never holds half a file.
+inline void write_text_atomically(const std::filesystem::path& path, std::string_view text) {
+  std::filesystem::path beside = path;
+  beside += ".tmp";
+  std::error_code problem;
+  {
+    std::ofstream out(beside, std::ios::binary | std::ios::trunc);
+    require(out.good(), "cannot write ", beside.string(), "; does its folder exist and may you write there?");
+    out.write(text.data(), static_cast<std::streamsize>(text.size()));
+    out.flush();
+    if (!out.good()) {
+      out.close();
+      std::filesystem::remove(beside, problem);
+      throw Error("writing ", text.size(), " bytes to ", beside.string(), " failed; is the disk full?");
+    }
+  }
+  std::filesystem::rename(beside, path, problem);
+  if (problem) {
+    std::error_code ignored;
+    std::filesystem::remove(beside, ignored);
+    throw Error("cannot rename ", beside.string(), " to ", path.string(), ": ", problem.message());
+  }
+}
+
+/// Whether the bytes are well-formed UTF-8, as files that carry text for others must be.
+inline bool is_utf8(std::string_view text) {
+  const auto byte = [&](std::size_t at) {
+    return at < text.size() ? static_cast<unsigned char>(text[at]) : 0u;
+  };
+  for (std::size_t i = 0; i < text.size();) {
+    const unsigned lead = byte(i);
+    const std::size_t n = lead < 0x80                   ? 1
+                          : lead >= 0xC2 && lead < 0xE0 ? 2
+                          : lead >= 0xE0 && lead < 0xF0 ? 3
+                          : lead >= 0xF0 && lead < 0xF5 ? 4
+                                                        : 0;
+    if (n == 0) return false;
+    for (std::size_t k = 1; k < n; ++k)
+      if ((byte(i + k) & 0xC0u) != 0x80u) return false;
+    // Overlong forms, surrogates and values past U+10FFFF show in the second byte.
+    const unsigned second = byte(i + 1);
+    if ((lead == 0xE0 && second < 0xA0) || (lead == 0xED && second > 0x9F) ||
+        (lead == 0xF0 && second < 0x90) || (lead == 0xF4 && second > 0x8F))
+      return false;
+    i += n;
+  }
+  return true;
+}
+
+}  // namespace motiongan::motion

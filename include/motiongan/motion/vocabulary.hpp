@@ -1,0 +1,97 @@
+// The words of the captions and their numbers.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "motiongan/core/error.hpp"
+
+namespace motiongan::motion {
+
+/// The words of a caption: lower-case, split at anything but letters and digits. Bytes of other scripts
+/// (UTF-8, 0x80 and above) count as letters and keep their case.
+inline std::vector<std::string> split_words(std::string_view caption) {
+  std::vector<std::string> words;
+  std::string word;
+  for (const char c : caption) {
+    const bool upper = c >= 'A' && c <= 'Z';
+    const bool part = upper || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || (c & 0x80) != 0;
+    if (part) {
+      word += upper ? static_cast<char>(c - 'A' + 'a') : c;
+    } else if (!word.empty()) {
+      words.push_back(std::exchange(word, {}));
+    }
+  }
+  if (!word.empty()) words.push_back(word);
+  return words;
+}
+
+/// Words in a fixed order; index 0 is `<unk>`, which stands for every word that is not in it (SPEC section
+/// 1).
+class Vocabulary {
+ public:
+  static constexpr const char* unknown = "<unk>";
+
+  Vocabulary() : Vocabulary(std::vector<std::string>{unknown}) {}
+
+  /// From a word list as words() gives it. Error if it does not start with `<unk>` or has a word twice or one
+  /// that no caption can contain.
+  explicit Vocabulary(std::vector<std::string> words) : words_(std::move(words)) {
+    require(!words_.empty() && words_.front() == unknown, "the first word of a vocabulary is '",
+            words_.empty() ? std::string() : words_.front(), "', expected '", unknown, "'");
+    for (std::size_t i = 0; i < words_.size(); ++i) {
+      require(i == 0 || split_words(words_[i]) == std::vector<std::string>{words_[i]}, "word ", i,
+              " of a vocabulary is '", words_[i], "', expected lower-case letters and digits");
+      require(index_.emplace(words_[i], static_cast<int>(i)).second, "word ", i, " of a vocabulary, '",
+              words_[i], "', is in it twice");
+    }
+  }
+
+  /// All words of the captions, sorted by their bytes.
+  static Vocabulary from_captions(std::span<const std::string> captions) {
+    std::set<std::string> sorted;
+    for (const std::string& caption : captions)
+      for (std::string& word : split_words(caption)) sorted.insert(std::move(word));
+    std::vector<std::string> words{unknown};
+    words.insert(words.end(), sorted.begin(), sorted.end());
+    return Vocabulary(std::move(words));
+  }
+
+  const std::vector<std::string>& words() const { return words_; }
+  std::size_t size() const { return words_.size(); }
+
+  /// Number of a word, 0 if it is not known.
+  int find(const std::string& word) const {
+    const auto at = index_.find(word);
+    return at == index_.end() ? 0 : at->second;
+  }
+
+  /// The caption's words as numbers; Error if it has no word.
+  std::vector<int> encode(std::string_view caption) const {
+    std::vector<int> out;
+    for (const std::string& word : split_words(caption)) out.push_back(find(word));
+    require(!out.empty(), "the caption '", caption,
+            "' has no words; describe the motion in letters or digits");
+    return out;
+  }
+
+  /// The caption's words that are not in the vocabulary, to warn about.
+  std::vector<std::string> unknown_words(std::string_view caption) const {
+    std::vector<std::string> out;
+    for (std::string& word : split_words(caption))
+      if (find(word) == 0) out.push_back(std::move(word));
+    return out;
+  }
+
+ private:
+  std::vector<std::string> words_;
+  std::unordered_map<std::string, int> index_;
+};
+
+}  // namespace motiongan::motion
