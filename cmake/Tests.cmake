@@ -27,6 +27,7 @@ foreach(source IN LISTS sources)
   set(target "${folder}_${name}")
   own_program(${target} "${source}")
   target_link_libraries(${target} PRIVATE test_main)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)   # a quarter less to compile, and none runs long
   target_compile_definitions(${target} PRIVATE MOTIONGAN_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
   own_test(${target} ${folder} ${target})
