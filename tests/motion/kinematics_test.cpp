@@ -1,0 +1,118 @@
+// Forward kinematics on an arm computed by hand, bone lengths, the joint that travels, and folding into it.
+#include "motiongan/motion/kinematics.hpp"
+
+#include <doctest/doctest.h>
+
+#include <vector>
+
+using namespace motiongan;
+using namespace motiongan::motion;
+
+namespace {
+
+const std::vector<Channel> six{Channel::x_position, Channel::y_position, Channel::z_position,
+                               Channel::z_rotation, Channel::x_rotation, Channel::y_rotation};
+const std::vector<Channel> three{Channel::z_rotation, Channel::x_rotation, Channel::y_rotation};
+
+/// Shoulder at the root, upper arm 2 along x, lower arm 1 along x, hand 0.5 as end site.
+Motion arm(std::size_t frames) {
+  Motion m;
+  m.skeleton.joints = {{"Shoulder", -1, {0, 0, 0}, six, {}},
+                       {"Elbow", 0, {2, 0, 0}, three, {}},
+                       {"Wrist", 1, {1, 0, 0}, three, Vec3{0.5, 0, 0}}};
+  m.rate = 10;
+  m.frames = frames;
+  for (std::size_t f = 0; f < frames; ++f)
+    for (const Joint& j : m.skeleton.joints) {
+      m.rotations.push_back({});
+      m.positions.push_back(j.offset);
+    }
+  return m;
+}
+
+bool near(const Vec3& a, const Vec3& b) { return length(subtract(a, b)) < 1e-12; }
+
+}  // namespace
+
+TEST_CASE("an arm bent at shoulder and elbow") {
+  Motion m = arm(2);
+  m.position(1, 0) = {10, 20, 30};
+  m.rotation(1, 0) = quat_from_expmap({0, 0, pi / 2});   // x to y
+  m.rotation(1, 1) = quat_from_expmap({0, -pi / 2, 0});  // x to z in the upper arm's frame
+  const GlobalPose g = forward_kinematics(m);
+  CHECK(near(g.positions[0], {0, 0, 0}));
+  CHECK(near(g.positions[1], {2, 0, 0}));
+  CHECK(near(g.positions[2], {3, 0, 0}));
+  CHECK(near(g.positions[3], {10, 20, 30}));
+  CHECK(near(g.positions[4], {10, 22, 30}));
+  CHECK(near(g.positions[5], {10, 22, 31}));
+  CHECK(joint_positions(m) == g.positions);
+  CHECK(joint_rotations(m) == g.rotations);
+  CHECK(near(rotate(g.rotations[5], {1, 0, 0}), {0, 0, 1}));
+  CHECK(end_site_joints(m.skeleton) == std::vector<std::size_t>{2});
+  const std::vector<Vec3> ends = end_site_positions(m, g);
+  REQUIRE(ends.size() == 2);
+  CHECK(near(ends[0], {3.5, 0, 0}));
+  CHECK(near(ends[1], {10, 22, 31.5}));
+  CHECK(bone_lengths(m.skeleton) == std::vector<double>{0, 2, 1});
+}
+
+TEST_CASE("a motion whose arrays do not fit is refused") {
+  Motion m = arm(2);
+  m.rotations.pop_back();
+  CHECK_THROWS_WITH_AS(forward_kinematics(m),
+                       doctest::Contains("has 5 rotations and 6 positions; expected 6"), Error);
+  m = arm(1);
+  m.skeleton.joints[1].parent = 2;
+  CHECK_THROWS_WITH_AS(forward_kinematics(m), doctest::Contains("joint 1 (Elbow) has parent 2"), Error);
+  m = arm(1);
+  m.rate = 0;
+  CHECK_THROWS_WITH_AS(forward_kinematics(m), doctest::Contains("rate is 0"), Error);
+}
+
+TEST_CASE("the joint that travels is found, and what is above it folded into it") {
+  // A resting world joint, turned and moved away, above the arm.
+  Motion m = arm(3);
+  m.skeleton.joints.insert(m.skeleton.joints.begin(), {"World", -1, {1, 0, 0}, six, {}});
+  for (std::size_t j = 1; j < 4; ++j) m.skeleton.joints[j].parent = static_cast<int>(j) - 1;
+  m.rotations.assign(12, Quat{});
+  m.positions.clear();
+  for (std::size_t f = 0; f < 3; ++f)
+    for (const Joint& j : m.skeleton.joints) m.positions.push_back(j.offset);
+  CHECK(moving_root(m) == 0);  // nothing travels
+  for (std::size_t f = 0; f < 3; ++f) {
+    m.rotation(f, 0) = quat_from_expmap({0, pi / 2, 0});
+    m.position(f, 1) = {static_cast<double>(f), 1, 0};
+    m.rotation(f, 1) = quat_from_expmap({0.1 * static_cast<double>(f), 0.2, 0.3});
+  }
+  CHECK(moving_root(m) == 1);
+  const Motion folded = fold_into_root(m, 1);
+  REQUIRE(folded.skeleton.size() == 3);
+  CHECK(folded.skeleton.joints[0].name == "Shoulder");
+  CHECK(folded.skeleton.joints[0].parent == -1);
+  CHECK(folded.skeleton.joints[2].parent == 1);
+  CHECK(folded.skeleton.joints[0].offset == Vec3{1, 0, 0});
+  const GlobalPose before = forward_kinematics(m), after = forward_kinematics(folded);
+  for (std::size_t f = 0; f < 3; ++f)
+    for (std::size_t j = 0; j < 3; ++j) {
+      CHECK(near(after.positions[f * 3 + j], before.positions[f * 4 + j + 1]));
+      CHECK(angle_between(after.rotations[f * 3 + j], before.rotations[f * 4 + j + 1]) < 1e-14);
+    }
+  CHECK(moving_root(folded) == 0);
+  m.position(1, 0) = {5, 5, 5};
+  CHECK(moving_root(m) == 0);  // the world joint travels itself
+
+  // A root without position channels gets them; a branch above the root would be lost.
+  m.skeleton.joints[1].channels = {Channel::y_rotation};
+  CHECK(fold_into_root(m, 1).skeleton.joints[0].channels == six);
+  m.skeleton.joints[3].parent = 0;
+  CHECK_THROWS_WITH_AS(fold_into_root(m, 1), doctest::Contains("'World' above it has other children"), Error);
+  CHECK_THROWS_AS(fold_into_root(m, 9), Error);
+}
+
+TEST_CASE("a turning root that stays in place is the root") {
+  Motion m = arm(3);
+  for (std::size_t f = 0; f < 3; ++f)
+    m.rotation(f, 0) = quat_from_expmap({0, 0.5 * static_cast<double>(f), 0});
+  CHECK(moving_root(m) == 0);
+}
