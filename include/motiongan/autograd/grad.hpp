@@ -4,7 +4,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "../ops/elementwise.hpp"
+#include "motiongan/ops/elementwise.hpp"
 
 namespace motiongan {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "../core/tensor.hpp"
+#include "motiongan/core/tensor.hpp"
 
 namespace motiongan {
 

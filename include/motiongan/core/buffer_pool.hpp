@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "opencl.hpp"
+#include "motiongan/core/opencl.hpp"
 
 namespace motiongan {
 

@@ -11,8 +11,8 @@
 #include <span>
 #include <vector>
 
-#include "buffer_pool.hpp"
-#include "program.hpp"
+#include "motiongan/core/buffer_pool.hpp"
+#include "motiongan/core/program.hpp"
 
 namespace motiongan {
 

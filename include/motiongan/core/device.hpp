@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "opencl.hpp"
+#include "motiongan/core/opencl.hpp"
 
 namespace motiongan {
 

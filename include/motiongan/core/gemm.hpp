@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "gemm_clblast.hpp"
-#include "gemm_native.hpp"
+#include "motiongan/core/gemm_clblast.hpp"
+#include "motiongan/core/gemm_native.hpp"
 
 namespace motiongan {
 

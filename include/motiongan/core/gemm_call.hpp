@@ -3,7 +3,7 @@
 #include <array>
 #include <limits>
 
-#include "tensor.hpp"
+#include "motiongan/core/tensor.hpp"
 
 namespace motiongan {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <algorithm>
 
-#include "gemm_call.hpp"
+#include "motiongan/core/gemm_call.hpp"
 
 // After OpenCL's headers, which ours ask for version 1.2.
 #include <clblast_c.h>

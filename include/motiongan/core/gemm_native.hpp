@@ -2,7 +2,7 @@
 #pragma once
 #include <algorithm>
 
-#include "gemm_call.hpp"
+#include "motiongan/core/gemm_call.hpp"
 
 namespace motiongan::detail {
 

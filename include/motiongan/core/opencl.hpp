@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "error.hpp"
+#include "motiongan/core/error.hpp"
 
 namespace motiongan {
 

@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "device.hpp"
+#include "motiongan/core/device.hpp"
 #include "motiongan/generated/kernels.hpp"
 
 namespace motiongan {

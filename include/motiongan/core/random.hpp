@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "tensor.hpp"
+#include "motiongan/core/tensor.hpp"
 
 namespace motiongan {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "context.hpp"
+#include "motiongan/core/context.hpp"
 
 namespace motiongan {
 

@@ -1,6 +1,6 @@
 // Functions number by number, with their derivatives.
 #pragma once
-#include "../autograd/var.hpp"
+#include "motiongan/autograd/var.hpp"
 
 namespace motiongan {
 

@@ -1,6 +1,6 @@
 // Cutting, joining and moving rows and frames, with their derivatives.
 #pragma once
-#include "reduce.hpp"
+#include "motiongan/ops/reduce.hpp"
 
 namespace motiongan {
 
@@ -30,6 +30,9 @@ inline void copy_runs(const Tensor& x, std::size_t x_first, std::size_t x_stride
                  x.view(x_first, {x.size() - x_first}), x_stride,
                  out.view(out_first, {out.size() - out_first}), out_stride, outer, run, std::size_t{0});
 }
+
+/// Copies all of x to `to`, of the same size, on the device.
+inline void copy_tensor(const Tensor& x, const Tensor& to) { copy_runs(x, 0, 0, to, 0, 0, 1, x.size()); }
 
 }  // namespace detail
 

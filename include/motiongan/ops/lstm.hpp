@@ -1,8 +1,8 @@
 // One LSTM layer over time: a fused form for values and first derivatives, a composed one for higher
 // derivatives.
 #pragma once
-#include "../autograd/grad.hpp"
-#include "matmul.hpp"
+#include "motiongan/autograd/grad.hpp"
+#include "motiongan/ops/matmul.hpp"
 
 namespace motiongan {
 

@@ -1,7 +1,7 @@
 // Matrix products, one or a batch of them.
 #pragma once
-#include "../core/gemm.hpp"
-#include "layout.hpp"
+#include "motiongan/core/gemm.hpp"
+#include "motiongan/ops/layout.hpp"
 
 namespace motiongan {
 

@@ -1,6 +1,6 @@
 // Sums over an axis and their adjoint, the expansion along one. Both see a tensor as [outer, count, inner].
 #pragma once
-#include "elementwise.hpp"
+#include "motiongan/ops/elementwise.hpp"
 
 namespace motiongan {
 

@@ -8,8 +8,8 @@
 // same sum with opposite offsets and the other op, the gradient by W is `taps_weight`, whose own gradients
 // are sums of taps again.
 #pragma once
-#include "../core/gemm.hpp"
-#include "layout.hpp"
+#include "motiongan/core/gemm.hpp"
+#include "motiongan/ops/layout.hpp"
 
 namespace motiongan {
 

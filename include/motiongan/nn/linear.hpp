@@ -1,0 +1,77 @@
+// Linear layers and convolutions along time: one or several taps, PyTorch's default initialisation
+// U(+-1/sqrt(fan_in)).
+#pragma once
+#include <cmath>
+
+#include "motiongan/nn/module.hpp"
+#include "motiongan/ops/taps.hpp"
+
+namespace motiongan {
+
+/// Convolution along time, stride 1, zero "same" padding: [T, B, in] -> [T, B, out]. With one tap it is a
+/// linear layer on every row, whatever the rank: [..., in] -> [..., out]. `weight` is kept [taps, out, in],
+/// in files [out, in, taps].
+struct Conv1d {
+  Var weight, bias;
+
+  Conv1d() = default;
+  Conv1d(Initializer& init, std::size_t in, std::size_t out, std::size_t taps_count = 1) {
+    require(taps_count % 2 == 1, "Conv1d: ", taps_count, " taps; same padding needs an odd number");
+    const double bound = 1 / std::sqrt(static_cast<double>(in * taps_count));
+    weight = init.uniform({taps_count, out, in}, bound);
+    bias = init.uniform({out}, bound);
+  }
+
+  std::size_t out_channels() const { return weight.dim(1); }
+
+  Offsets offsets() const {
+    const int reach = static_cast<int>(weight.dim(0) / 2);
+    Offsets list;
+    for (int s = -reach; s <= reach; ++s) list.push_back(s);
+    return list;
+  }
+
+  /// conv(x) + residual, then ReLU if asked.
+  Var operator()(const Var& x, const TapsExtras& extras = {}) const {
+    return taps(x, weight, offsets(), x.dim(0), false,
+                {.bias = bias, .residual = extras.residual, .relu = extras.relu});
+  }
+
+  /// Down(conv(x)) for three taps, at half the arithmetic: the mean of two neighbouring outputs is the
+  /// convolution of the means of neighbouring inputs. `pairs` is pair_means(x) of a motion of `frames`
+  /// frames; ReLU follows if asked.
+  Var down(const Var& pairs, std::size_t frames, bool with_relu) const {
+    require(weight.dim(0) == 3, "Conv1d::down: 3 taps expected, ", weight.dim(0), " found");
+    const int half = static_cast<int>(frames / 2);
+    return taps(pairs, weight, {0, half + 1, 1}, frames / 2, false, {.bias = bias, .relu = with_relu});
+  }
+
+  void list_parameters(ParameterList& list) {
+    list.add("weight", weight, Layout::convolution);
+    list.add("bias", bias);
+  }
+};
+
+/// y = x W^T + b on the last axis; `weight` is [out, in] in files.
+struct Linear {
+  Var weight, bias;
+
+  Linear() = default;
+  Linear(Initializer& init, std::size_t in, std::size_t out) {
+    const double bound = 1 / std::sqrt(static_cast<double>(in));
+    weight = init.uniform({out, in}, bound);
+    bias = init.uniform({out}, bound);
+  }
+
+  Var operator()(const Var& x, bool with_relu = false) const {
+    const Var w = reshape(weight, {1, weight.dim(0), weight.dim(1)});
+    return taps(x, w, {0}, x.dim(0), false, {.bias = bias, .relu = with_relu});
+  }
+
+  void list_parameters(ParameterList& list) {
+    list.add("weight", weight);
+    list.add("bias", bias);
+  }
+};
+
+}  // namespace motiongan

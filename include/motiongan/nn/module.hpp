@@ -1,0 +1,97 @@
+// Modules own named parameters. Names are PyTorch's state_dict keys, joined by dots.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "motiongan/autograd/grad.hpp"
+#include "motiongan/core/random.hpp"
+
+namespace motiongan {
+
+/// How a parameter is kept on the device and how it is written to files.
+enum class Layout {
+  plain,       ///< as PyTorch has it
+  convolution  ///< [taps, out, in] on the device (each tap is one matrix), [out, in, taps] in files
+};
+
+struct NamedParameter {
+  std::string name;
+  Var* value = nullptr;
+  Layout layout = Layout::plain;
+};
+
+/// Makes parameters with random first values: each is named by its place in the model, so a layer more or
+/// less elsewhere does not change the numbers of the others.
+class Initializer {
+ public:
+  Initializer(const Context& context, std::uint64_t seed) : context_(context), seed_(seed) {}
+
+  const Context& context() const { return context_; }
+
+  /// Uniform in [-bound, bound].
+  Var uniform(Shape shape, double bound) {
+    std::vector<float> values(element_count(shape));
+    const RandomKey key{.seed = seed_, .stream = Stream::weights, .step = ++count_};
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] = static_cast<float>(
+          bound * (2 * (random_word(key, 0, static_cast<std::uint32_t>(i)) + 0.5) * 0x1p-32 - 1));
+    return Var::leaf(Tensor::from(context_, std::move(shape), values));
+  }
+
+  /// N(0, 1).
+  Var normal(std::size_t rows, std::size_t columns) {
+    return Var::leaf(random_normal(context_, {.seed = seed_, .stream = Stream::weights, .step = ++count_}, 1,
+                                   rows, columns)
+                         .reshape({rows, columns}));
+  }
+
+  Var constant(Shape shape, double value) { return Var::leaf(filled(context_, std::move(shape), value)); }
+
+ private:
+  Context context_;
+  std::uint64_t seed_;
+  std::uint32_t count_ = 0;
+};
+
+/// A list of parameters under construction; modules add theirs under a prefix.
+class ParameterList {
+ public:
+  void add(const std::string& name, Var& value, Layout layout = Layout::plain) {
+    items_.push_back({name, &value, layout});
+  }
+
+  template <class Module>
+  void add_module(const std::string& prefix, Module& module) {
+    ParameterList inner;
+    module.list_parameters(inner);
+    for (NamedParameter& p : inner.items_) items_.push_back({prefix + "." + p.name, p.value, p.layout});
+  }
+
+  const std::vector<NamedParameter>& items() const { return items_; }
+
+ private:
+  std::vector<NamedParameter> items_;
+};
+
+/// The named parameters of a module (anything with list_parameters(ParameterList&)).
+template <class Module>
+std::vector<NamedParameter> named_parameters(Module& module) {
+  ParameterList list;
+  module.list_parameters(list);
+  return list.items();
+}
+
+inline std::vector<Var> values_of(const std::vector<NamedParameter>& parameters) {
+  std::vector<Var> values;
+  for (const NamedParameter& p : parameters) values.push_back(*p.value);
+  return values;
+}
+
+inline std::size_t parameter_count(const std::vector<NamedParameter>& parameters) {
+  std::size_t n = 0;
+  for (const NamedParameter& p : parameters) n += p.value->size();
+  return n;
+}
+
+}  // namespace motiongan

@@ -1,0 +1,54 @@
+// The losses of a Wasserstein GAN with gradient penalty (Gulrajani et al. 2017; SPEC 4), for any critic of
+// motion.
+#pragma once
+#include <functional>
+
+#include "motiongan/autograd/grad.hpp"
+#include "motiongan/ops/layout.hpp"
+
+namespace motiongan {
+
+/// A critic with everything but the motion fixed: [T, B, C] -> [B].
+using Judge = std::function<Var(const Var& motion)>;
+
+/// eps*real + (1-eps)*fake with one eps [B] per sample; a leaf, ready to be differentiated by.
+inline Var mix(const Tensor& real, const Tensor& fake, const Tensor& eps) {
+  const NoGrad values_only;
+  const Var r = Var::constant(real), f = Var::constant(fake);
+  const Var e = expand_samples(Var::constant(eps), real.dim(0), real.dim(2));
+  return Var::leaf((f + e * (r - f)).value());
+}
+
+/// mean over samples of (|gradient of the judge at x| - 1)^2, [1]; the norm is over all frames and channels
+/// of a sample. Itself differentiable by the judge's parameters. `x` is a leaf.
+inline Var gradient_penalty(const Judge& judge, const Var& x) {
+  const Var slope = grad(judge(x), {x}, {.create_graph = true})[0];
+  const Var norm = sqrt(sum_per_sample(square(slope)) + 1e-12);
+  return mean(square(norm - 1));
+}
+
+/// The parts of the critic's loss, each [1].
+struct CriticLoss {
+  Var loss;         ///< mean D(fake) - mean D(real) + lambda * penalty
+  Var wasserstein;  ///< mean D(real) - mean D(fake), the estimate of the distance
+  Var penalty;
+  Var scores;  ///< [2B]: of the real, then of the fake motions
+};
+
+/// `judge_pairs` judges real and fake motions joined along the batch, [T, 2B, C] -> [2B]; `judge` a batch of
+/// B.
+inline CriticLoss critic_loss(const Judge& judge_pairs, const Judge& judge, const Tensor& real,
+                              const Tensor& fake, const Tensor& eps, double lambda) {
+  const std::size_t batch = real.dim(1);
+  CriticLoss out;
+  out.scores = judge_pairs(concat_axis({Var::constant(real), Var::constant(fake)}, 1));
+  out.wasserstein = mean(slice(out.scores, 0, 0, batch)) - mean(slice(out.scores, 0, batch, batch));
+  out.penalty = gradient_penalty(judge, mix(real, fake, eps));
+  out.loss = weighted_sum(out.penalty, lambda, out.wasserstein, -1);
+  return out;
+}
+
+/// -mean D(fake), [1].
+inline Var generator_loss(const Var& fake_scores) { return -mean(fake_scores); }
+
+}  // namespace motiongan
