@@ -1,0 +1,194 @@
+// What is drawn of a motion: points in space, the bones between them, and how large, how high and which way
+// round the figure stands. The player and the pose strip both draw this.
+#pragma once
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "motiongan/core/error.hpp"
+#include "motiongan/motion/kinematics.hpp"
+#include "motiongan/motion/skeleton.hpp"
+
+namespace motiongan::view {
+
+/// A motion with what a viewer writes beneath it.
+struct ViewedMotion {
+  std::string title;  ///< UTF-8
+  motion::Motion motion;
+  std::size_t seed_frames = 0;  ///< the first frames that were given rather than generated: drawn in grey
+};
+
+enum class Side : std::uint8_t { centre, left, right };
+
+/// Which side of the body a joint is on, by its name: "LeftFoot", "LThumb", "UpperLeg_L",
+/// "mixamorig:LeftArm".
+inline Side side_of(std::string_view name) {
+  name.remove_prefix(name.rfind(':') == std::string_view::npos ? 0 : name.rfind(':') + 1);
+  std::string lower;
+  for (const char c : name) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (lower.find("left") != std::string::npos) return Side::left;
+  if (lower.find("right") != std::string::npos) return Side::right;
+  const std::size_t n = name.size();
+  if (n < 2) return Side::centre;
+  const auto stands_alone = [](char c) { return c == '_' || c == '.' || c == '-' || c == ' '; };
+  const auto letter = [](char c) {
+    return c == 'l' || c == 'L' ? Side::left : c == 'r' || c == 'R' ? Side::right : Side::centre;
+  };
+  if (stands_alone(name[n - 2]) && letter(name[n - 1]) != Side::centre) return letter(name[n - 1]);
+  if (stands_alone(name[1])) return letter(name[0]);
+  // "LHipJoint" but not "LowerBack"; a small first letter as in "lFoot".
+  return std::isupper(static_cast<unsigned char>(name[1])) ? letter(name[0]) : Side::centre;
+}
+
+/// A motion as points and bones. Joints that always coincide with their parent are drawn as one point.
+struct Figure {
+  double rate = 0;  ///< frames per second
+  std::size_t frames = 0;
+  std::vector<int> parents;  ///< [nodes], the node a bone comes from; -1 for the first node, the root
+  std::vector<Side> sides;   ///< [nodes], of the bone that ends in the node
+  std::vector<char> heads;  ///< [nodes], 1 where the bone that ends in the node is the head, 2 where the head
+                            ///< sits on the node
+  std::vector<motion::Vec3> points;  ///< [frames, nodes], in the world, y up, in the file's unit
+  double height = 1;                 ///< about how tall the figure stands, in the file's unit
+  double floor = 0;                  ///< height of the ground
+  double heading = 0;                ///< angle about y by which the figure is turned from facing +z, radians
+
+  std::size_t nodes() const { return parents.size(); }
+  const motion::Vec3& point(std::size_t frame, std::size_t node) const {
+    return points[frame * nodes() + node];
+  }
+};
+
+namespace detail {
+
+/// The joint that drawing begins with: joints above it are a resting handle ("joint_Root"), not a bone.
+inline std::size_t first_drawn_joint(const motion::Motion& m) {
+  const auto below = motion::children(m.skeleton);
+  const auto rests = [&](std::size_t j) {
+    for (std::size_t f = 1; f < m.frames; ++f)
+      if (m.rotation(f, j) != m.rotation(0, j)) return false;
+    return !motion::has_moving_track(m, j);
+  };
+  std::size_t j = 0;
+  // In a single frame everything rests, so that nothing can be told.
+  while (m.frames > 1 && below[j].size() == 1 && rests(j)) j = below[j].front();
+  return below[j].empty() ? 0 : j;
+}
+
+/// About how tall a figure stands: for people the longest way from the hips to a tip (a hand, a toe) is about
+/// three quarters of it.
+inline double standing_height(const motion::Skeleton& skeleton, std::size_t first) {
+  std::vector<double> reach(skeleton.size(), 0);
+  double longest = 0;
+  for (std::size_t j = first; j < skeleton.size(); ++j) {
+    const motion::Joint& joint = skeleton.joints[j];
+    if (j > first && joint.parent >= static_cast<int>(first))
+      reach[j] = reach[static_cast<std::size_t>(joint.parent)] + motion::length(joint.offset);
+    longest = std::max(longest, reach[j] + (joint.end_site ? motion::length(*joint.end_site) : 0));
+  }
+  return longest > 0 ? 1.3 * longest : 1;
+}
+
+/// Mean direction of the figure over the clip, from its first left and right points that lie apart.
+inline double mean_heading(const Figure& figure) {
+  std::size_t left = 0, right = 0;
+  for (std::size_t n = figure.nodes(); n-- > 1;) {
+    if (figure.sides[n] == Side::left) left = n;
+    if (figure.sides[n] == Side::right) right = n;
+  }
+  if (left == 0 || right == 0) return 0;
+  double sine = 0, cosine = 0, first = 0;
+  for (std::size_t f = 0; f < figure.frames; ++f) {
+    const motion::Vec3 across = motion::subtract(figure.point(f, left), figure.point(f, right));
+    const double angle = std::atan2(-across[2], across[0]);  // forward = across x up
+    if (f == 0) first = angle;
+    sine += std::sin(angle);
+    cosine += std::cos(angle);
+  }
+  // Who turns round and round has no mean direction: take the first.
+  const bool turns = std::hypot(sine, cosine) < 0.3 * static_cast<double>(figure.frames);
+  return turns ? first : std::atan2(sine, cosine);
+}
+
+/// The height of the ground: the lowest point of nearly all frames, so that one bad frame does not lift it.
+inline double ground(const Figure& figure) {
+  std::vector<double> lowest(figure.frames, 0);
+  for (std::size_t f = 0; f < figure.frames; ++f) {
+    lowest[f] = figure.point(f, 0)[1];
+    for (std::size_t n = 1; n < figure.nodes(); ++n) lowest[f] = std::min(lowest[f], figure.point(f, n)[1]);
+  }
+  const auto at = lowest.begin() + static_cast<std::ptrdiff_t>(figure.frames / 20);
+  std::nth_element(lowest.begin(), at, lowest.end());
+  return *at;
+}
+
+}  // namespace detail
+
+/// The points and bones of a motion. Error for a motion without frames or joints, or with a position that is
+/// not a number.
+inline Figure make_figure(const ViewedMotion& viewed) {
+  const motion::Motion& m = viewed.motion;
+  const std::size_t joints = m.skeleton.size();
+  require(m.frames > 0 && joints > 0, "the motion '", viewed.title, "' has ", m.frames, " frames and ",
+          joints, " joints; there is nothing to show");
+  const motion::GlobalPose global = motion::forward_kinematics(m);
+  const std::vector<std::size_t> ends = motion::end_site_joints(m.skeleton);
+  const std::vector<motion::Vec3> tips = motion::end_site_positions(m, global);
+  const auto below = motion::children(m.skeleton);
+  const std::size_t first = detail::first_drawn_joint(m);
+
+  Figure out;
+  out.rate = m.rate;
+  out.frames = m.frames;
+  out.height = detail::standing_height(m.skeleton, first);
+  const double tiny = 1e-6 * out.height;
+  const auto is_head = [](std::string_view name) {
+    return name.find("Head") != std::string_view::npos || name.find("head") != std::string_view::npos;
+  };
+
+  // Which array a node's points come from: joint j, or tip number t.
+  std::vector<std::pair<bool, std::size_t>> sources;
+  std::vector<int> node_of(joints, -1);  // [joints], -1 above the first drawn one
+  for (std::size_t j = first, tip = 0; j < joints; ++j) {
+    const motion::Joint& joint = m.skeleton.joints[j];
+    const int parent = j == first ? -1 : node_of[static_cast<std::size_t>(joint.parent)];
+    const bool has_tip = joint.end_site && motion::length(*joint.end_site) > tiny;
+    bool apart = j == first;
+    for (std::size_t f = 0; f < m.frames && !apart; ++f) apart = motion::length(m.position(f, j)) > tiny;
+    node_of[j] = apart ? static_cast<int>(sources.size()) : parent;
+    if (apart) {
+      sources.emplace_back(false, j);
+      out.parents.push_back(parent);
+      out.sides.push_back(side_of(joint.name));
+      out.heads.push_back(is_head(joint.name) && below[j].empty() && !has_tip ? 2 : 0);
+    }
+    while (tip < ends.size() && ends[tip] < j) ++tip;
+    if (has_tip) {
+      sources.emplace_back(true, tip);
+      out.parents.push_back(node_of[j]);
+      out.sides.push_back(side_of(joint.name));
+      out.heads.push_back(is_head(joint.name) ? 1 : 0);
+    }
+  }
+
+  out.points.reserve(m.frames * sources.size());
+  for (std::size_t f = 0; f < m.frames; ++f) {
+    for (const auto& [is_tip, index] : sources) {
+      const motion::Vec3& p = is_tip ? tips[f * ends.size() + index] : global.positions[f * joints + index];
+      require(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]), "the motion '", viewed.title,
+              "' has a position that is not a finite number in frame ", f, "; it cannot be drawn");
+      out.points.push_back(p);
+    }
+  }
+  out.floor = detail::ground(out);
+  out.heading = detail::mean_heading(out);
+  return out;
+}
+
+}  // namespace motiongan::view

@@ -1,0 +1,170 @@
+// One self-contained HTML page that plays motions side by side as stick figures.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <span>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "motiongan/core/error.hpp"
+#include "motiongan/generated/view.hpp"
+#include "motiongan/view/figure.hpp"
+
+namespace motiongan::view {
+
+struct PlayerOptions {
+  std::string title = "motion";  ///< of the page, UTF-8
+  double max_rate = 60;          ///< frames per second; faster motions are thinned to keep the page small
+};
+
+namespace detail {
+
+/// `bytes` in base64, padded.
+inline std::string base64(std::span<const std::uint8_t> bytes) {
+  static constexpr std::string_view digits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  out.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t n = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < n ? bytes[i + k] : 0u);
+    for (std::size_t k = 0; k < 4; ++k) out += k <= n ? digits[group >> (18 - 6 * k) & 63u] : '=';
+  }
+  return out;
+}
+
+/// A JSON string that can also stand inside an HTML script element: no character of it can end the element.
+inline std::string json_string(std::string_view utf8) {
+  std::string out = "\"";
+  for (const char c : utf8) {
+    const auto code = static_cast<unsigned char>(c);
+    if (code < 32 || code == 127 || c == '"' || c == '\\' || c == '<' || c == '>' || c == '&' || c == '\'') {
+      char escape[8];
+      std::snprintf(escape, sizeof escape, "\\u%04x", static_cast<unsigned>(code));
+      out += escape;
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+/// A number as JSON has it, with enough digits for a float.
+inline std::string json_number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  std::replace(text, text + sizeof text, ',', '.');  // some locales print a decimal comma
+  return text;
+}
+
+template <class Range>
+std::string json_integers(const Range& values) {
+  std::string out = "[";
+  for (const auto value : values)
+    out += (out.size() > 1 ? "," : "") + std::to_string(static_cast<int>(value));
+  return out + "]";
+}
+
+/// One clip of the page: bones and positions, the latter as little-endian int16 [frames, nodes, 3] in base64.
+inline std::string json_clip(const ViewedMotion& viewed, double max_rate) {
+  const Figure figure = make_figure(viewed);
+  // Whole strides, so that every frame shown is one that was computed.
+  const double excess = std::ceil(figure.rate / max_rate - 1e-6);
+  const std::size_t stride = excess > 1 ? static_cast<std::size_t>(excess) : 1;
+  const std::size_t frames = (figure.frames - 1) / stride + 1;
+
+  motion::Vec3 low = figure.points.front(), high = low;
+  for (const motion::Vec3& p : figure.points) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], p[k]);
+      high[k] = std::max(high[k], p[k]);
+    }
+  }
+  motion::Vec3 origin;
+  double scale = 1e-9;
+  for (std::size_t k = 0; k < 3; ++k) {
+    origin[k] = low[k] + (high[k] - low[k]) / 2;
+    scale = std::max(scale, (high[k] - low[k]) / 2 / 32767);
+  }
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(frames * figure.nodes() * 6);
+  for (std::size_t f = 0; f < frames; ++f) {
+    for (std::size_t n = 0; n < figure.nodes(); ++n) {
+      const motion::Vec3& p = figure.point(f * stride, n);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double steps = std::clamp((p[k] - origin[k]) / scale, -32767.0, 32767.0);
+        const auto number = static_cast<std::uint16_t>(static_cast<std::int16_t>(std::lround(steps)));
+        bytes.push_back(static_cast<std::uint8_t>(number & 255u));
+        bytes.push_back(static_cast<std::uint8_t>(number >> 8));
+      }
+    }
+  }
+  const std::size_t seed = std::min(viewed.seed_frames, figure.frames);
+  return "{\"title\":" + json_string(viewed.title) +
+         ",\"rate\":" + json_number(figure.rate / static_cast<double>(stride)) +
+         ",\"frames\":" + std::to_string(frames) +
+         ",\"seed\":" + std::to_string((seed + stride - 1) / stride) +
+         ",\"parents\":" + json_integers(figure.parents) + ",\"sides\":" + json_integers(figure.sides) +
+         ",\"heads\":" + json_integers(figure.heads) + ",\"height\":" + json_number(figure.height) +
+         ",\"floor\":" + json_number(figure.floor) + ",\"heading\":" + json_number(figure.heading) +
+         ",\"origin\":[" + json_number(origin[0]) + "," + json_number(origin[1]) + "," +
+         json_number(origin[2]) + "],\"scale\":" + json_number(scale) + ",\"data\":\"" + base64(bytes) +
+         "\"}";
+}
+
+}  // namespace detail
+
+/// An HTML page that plays `motions` side by side: play, pause, scrub, orbit, zoom, speed. It needs no
+/// network and no other file. The address may say where to begin: "page.html#t=1.5" stands still at 1.5 s.
+/// Error where there are no motions, or one cannot be drawn (see make_figure).
+inline std::string player_page(std::span<const ViewedMotion> motions, const PlayerOptions& options = {}) {
+  require(!motions.empty(), "a page to play motions was asked for, but no motion was given");
+  require(options.max_rate > 0, "the greatest frame rate of a page is ", options.max_rate,
+          "; expected a positive number of frames per second");
+  std::string clips = "{\"title\":" + detail::json_string(options.title) + ",\"clips\":[";
+  for (std::size_t i = 0; i < motions.size(); ++i)
+    clips += (i > 0 ? ",\n" : "\n") + detail::json_clip(motions[i], options.max_rate);
+  clips += "]}";
+
+  constexpr std::string_view page = view_files::player, marker = "/*CLIPS*/";
+  constexpr std::size_t at = page.find(marker);
+  static_assert(at != std::string_view::npos && page.find(marker, at + 1) == std::string_view::npos,
+                "view/player.html must hold the marker of the clips exactly once");
+  return std::string(page.substr(0, at)) + clips + std::string(page.substr(at + marker.size()));
+}
+
+/// Writes player_page to `path`; a file that is there already is replaced only by a complete one.
+/// Error where the page cannot be made or written.
+inline void write_player(const std::filesystem::path& path, std::span<const ViewedMotion> motions,
+                         const PlayerOptions& options = {}) {
+  const std::string page = player_page(motions, options);
+  std::filesystem::path beside = path;
+  beside += ".tmp";
+  std::error_code problem;
+  {
+    std::ofstream out(beside, std::ios::binary);
+    out.write(page.data(), static_cast<std::streamsize>(page.size()));
+    out.close();
+    if (!out) {
+      std::filesystem::remove(beside, problem);
+      throw Error("cannot write the page ", path.string(), " (", page.size(),
+                  " bytes); check that the folder exists, may be written to and has room");
+    }
+  }
+  std::filesystem::rename(beside, path, problem);
+  if (problem) {
+    const std::string reason = problem.message();
+    std::filesystem::remove(beside, problem);
+    throw Error("cannot put the page at ", path.string(), ": ", reason);
+  }
+}
+
+}  // namespace motiongan::view
