@@ -1,0 +1,141 @@
+// Curves over a common axis: how a training went.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "motiongan/core/error.hpp"
+#include "motiongan/view/canvas.hpp"
+
+namespace motiongan::view {
+
+struct Series {
+  std::string name;
+  std::vector<double> x, y;  ///< [points] each; points that are not finite leave a gap
+};
+
+struct PlotOptions {
+  std::string title = {};
+  std::string x_label = {};
+  std::size_t width = 960, height = 480;  ///< pixels
+};
+
+namespace detail {
+
+struct Axis {
+  double low = 0, high = 1, step = 0.2;
+
+  double part(double value) const { return (value - low) / (high - low); }
+};
+
+/// Limits that hold both values, and a step of 1, 2 or 5 times a power of ten that cuts them into about
+/// `pieces`.
+inline Axis nice_axis(double low, double high, double pieces) {
+  // A curve that does not change still needs an axis to stand on.
+  if (high - low <= 1e-9 * std::max(std::abs(low), std::abs(high))) {
+    const double room = std::max(std::abs(low) * 0.1, 1e-6);
+    low -= room;
+    high += room;
+  }
+  const double raw = (high - low) / pieces;
+  const double power = std::pow(10.0, std::floor(std::log10(raw)));
+  Axis out;
+  out.step = power * (raw / power <= 1 ? 1 : raw / power <= 2 ? 2 : raw / power <= 5 ? 5 : 10);
+  out.low = std::floor(low / out.step) * out.step;
+  out.high = std::ceil(high / out.step) * out.step;
+  return out;
+}
+
+inline std::string axis_number(double value, double step) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", std::abs(value) < 1e-6 * step ? 0.0 : value);
+  return text;
+}
+
+}  // namespace detail
+
+/// A plot of `series` over common axes, with numbers and a legend. Error where the arrays of a series differ
+/// in length, no point is finite, or the picture is too small to hold the axes.
+inline Image line_plot(std::span<const Series> series, const PlotOptions& options = {}) {
+  require(options.width >= 240 && options.height >= 160, "a plot of ", options.width, " x ", options.height,
+          " pixels was asked for; expected at least 240 x 160");
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  double low_x = infinity, high_x = -infinity, low_y = infinity, high_y = -infinity;
+  for (const Series& s : series) {
+    require(s.x.size() == s.y.size(), "the series '", s.name, "' has ", s.x.size(), " places and ",
+            s.y.size(), " values; expected as many of both");
+    for (std::size_t i = 0; i < s.x.size(); ++i) {
+      if (!std::isfinite(s.x[i]) || !std::isfinite(s.y[i])) continue;
+      low_x = std::min(low_x, s.x[i]);
+      high_x = std::max(high_x, s.x[i]);
+      low_y = std::min(low_y, s.y[i]);
+      high_y = std::max(high_y, s.y[i]);
+    }
+  }
+  require(low_x <= high_x, "a plot of ", series.size(),
+          " series was asked for, but they hold no finite point");
+
+  const double width = static_cast<double>(options.width), height = static_cast<double>(options.height);
+  const detail::Axis y_axis = detail::nice_axis(low_y, high_y, std::max(2.0, height / 80));
+  detail::Axis x_axis = detail::nice_axis(low_x, high_x, std::max(2.0, width / 130));
+  if (high_x > low_x) {  // the curve uses the whole width
+    x_axis.low = low_x;
+    x_axis.high = high_x;
+  }
+  double numbers = 0;
+  for (double v = y_axis.low; v <= y_axis.high + y_axis.step / 2; v += y_axis.step)
+    numbers = std::max(numbers, text_width(detail::axis_number(v, y_axis.step)));
+
+  const double left = numbers + 22, right = width - 30;
+  const double top = options.title.empty() ? 44 : 72, bottom = height - (options.x_label.empty() ? 36 : 58);
+  const Color ink{0x1b, 0x1f, 0x24}, soft{0x5b, 0x65, 0x70}, grid{0xe2, 0xe6, 0xea};
+  Image image(options.width, options.height);
+  Canvas canvas(image);
+  const auto place_x = [&](double v) { return left + x_axis.part(v) * (right - left); };
+  const auto place_y = [&](double v) { return bottom - y_axis.part(v) * (bottom - top); };
+
+  for (double v = y_axis.low; v <= y_axis.high + y_axis.step / 2; v += y_axis.step) {
+    const std::string label = detail::axis_number(v, y_axis.step);
+    const bool zero = std::abs(v) < 1e-6 * y_axis.step;
+    canvas.box(left, place_y(v), right - left, 1, zero ? soft : grid);
+    canvas.text(left - 8 - text_width(label), place_y(v) - 7, label, soft);
+  }
+  for (double v = std::ceil(x_axis.low / x_axis.step - 1e-9) * x_axis.step;
+       v <= x_axis.high + 1e-9 * x_axis.step; v += x_axis.step) {
+    const std::string label = detail::axis_number(v, x_axis.step);
+    canvas.box(place_x(v), top, 1, bottom - top, grid);
+    const double at = place_x(v) - text_width(label) / 2;
+    canvas.text(std::min(at, width - 4 - text_width(label)), bottom + 10, label, soft);
+  }
+  canvas.box(left, top, 1, bottom - top, soft);
+  canvas.box(left, bottom, right - left, 1, soft);
+  canvas.text(left, 14, fitted(options.title, width - left - 8), ink);
+  canvas.text((left + right - text_width(options.x_label)) / 2, height - 24, options.x_label, soft);
+
+  double legend = left;
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    const Series& s = series[k];
+    const Color color = palette(k);
+    for (std::size_t i = 0; i < s.x.size(); ++i) {
+      if (!std::isfinite(s.x[i]) || !std::isfinite(s.y[i])) continue;
+      const double x = place_x(s.x[i]), y = place_y(s.y[i]);
+      const bool joined = i > 0 && std::isfinite(s.x[i - 1]) && std::isfinite(s.y[i - 1]);
+      if (joined)
+        canvas.line(place_x(s.x[i - 1]), place_y(s.y[i - 1]), x, y, 2, color);
+      else
+        canvas.disc(x, y, 1.5, color);
+    }
+    canvas.line(legend, top - 20, legend + 22, top - 20, 4, color);
+    canvas.text(legend + 30, top - 27, s.name, ink);
+    legend += 30 + text_width(s.name) + 26;
+  }
+  return image;
+}
+
+}  // namespace motiongan::view
