@@ -1,0 +1,101 @@
+// A training run on disk: everything that the next iteration depends on, in one file.
+#pragma once
+#include "motiongan/train/dvgan_trainer.hpp"
+
+namespace motiongan {
+
+namespace detail {
+
+inline nlohmann::json to_json(const DvganTrainOptions& o) {
+  return {{"critic_steps", o.critic_steps},
+          {"batch", o.batch},
+          {"lambda_gp", o.lambda_gp},
+          {"learning_rate", o.adam.learning_rate},
+          {"beta1", o.adam.beta1},
+          {"beta2", o.adam.beta2},
+          {"epsilon", o.adam.epsilon},
+          {"input_shift", o.input_shift},
+          {"validation", static_cast<int>(o.validation)},
+          {"level_weights", static_cast<int>(o.level_weights)},
+          {"seed", o.seed}};
+}
+
+inline io::SafeTensor host_copy(const Tensor& t) {
+  return t.context().precision() == Precision::f64 ? io::SafeTensor::of(t.shape(), t.to_host<double>())
+                                                   : io::SafeTensor::of(t.shape(), t.to_host<float>());
+}
+
+inline void restore(Tensor& t, const io::SafeTensors& file, const std::string& name,
+                    const std::string& where) {
+  const io::SafeTensor& from = file.at(name);
+  require(from.shape == t.shape(), where, ": \"", name, "\" has shape ", to_string(from.shape), ", expected ",
+          to_string(t.shape()));
+  const std::vector<double> values = from.as<double>();
+  t.write(std::span<const double>(values));
+}
+
+}  // namespace detail
+
+/// Writes the run's state: both networks, both optimisers, the position. Random numbers have no state: they
+/// are named by seed and step. The file is written beside and renamed, so a run killed at any moment leaves
+/// the last whole one.
+inline void save_checkpoint(DvganTrainer& trainer, const std::filesystem::path& path) {
+  io::SafeTensors file;
+  trainer.model().describe(file);
+  io::save_parameters(named_parameters(trainer.model().generator()), file, "generator.");
+  io::save_parameters(named_parameters(trainer.critic()), file, "critic.");
+  for (const auto& [name, adam] :
+       {std::pair{"generator", &trainer.generator_adam()}, std::pair{"critic", &trainer.critic_adam()}}) {
+    file.tensors[concat("adam.", name, ".mean")] = detail::host_copy(adam->mean());
+    file.tensors[concat("adam.", name, ".square")] = detail::host_copy(adam->square());
+    file.metadata[concat("adam.", name, ".steps")] = std::to_string(adam->steps());
+  }
+  file.metadata["training"] = detail::to_json(trainer.options()).dump();
+  file.metadata["iteration"] = std::to_string(trainer.iteration());
+  file.write(path);
+}
+
+/// Continues where save_checkpoint() left off, bit for bit as if the run had never stopped. The trainer must
+/// have been made with the same options and data; an Error says what differs.
+inline void load_checkpoint(DvganTrainer& trainer, const std::filesystem::path& path) {
+  const std::string where = path.string();
+  const io::SafeTensors file = io::SafeTensors::read(path);
+  const auto text = [&](const std::string& key) -> const std::string& {
+    const auto found = file.metadata.find(key);
+    require(found != file.metadata.end(), where, ": not a checkpoint of a training run (no \"", key,
+            "\" in its metadata)");
+    return found->second;
+  };
+  const auto number = [&](const std::string& key) {
+    const std::string& value = text(key);
+    std::size_t n = 0;
+    const auto [end, code] = std::from_chars(value.data(), value.data() + value.size(), n);
+    require(code == std::errc() && end == value.data() + value.size(), where, ": \"", key, "\" is \"", value,
+            "\", expected a whole number");
+    return n;
+  };
+  io::SafeTensors expected;
+  trainer.model().describe(expected);
+  for (const char* key : {"motiongan_model", "options", "format"})
+    require(text(key) == expected.metadata.at(key), where,
+            ": the run was started with other data or another model (\"", key,
+            "\" differs); give the options of ", "the first start, or another folder for a new run");
+  const auto before = nlohmann::json::parse(text("training"), nullptr, false),
+             now = detail::to_json(trainer.options());
+  require(before.is_object(), where, ": the training options cannot be read");
+  for (const auto& [key, value] : now.items())
+    require(before.contains(key) && before.at(key) == value, where, ": the run was started with ", key, " = ",
+            before.value(key, nlohmann::json()).dump(), ", now ", value.dump(),
+            " is asked; give the same, or another folder for a new run");
+  io::load_parameters(named_parameters(trainer.model().generator()), file, where, "generator.");
+  io::load_parameters(named_parameters(trainer.critic()), file, where, "critic.");
+  for (const auto& [name, adam] :
+       {std::pair{"generator", &trainer.generator_adam()}, std::pair{"critic", &trainer.critic_adam()}}) {
+    detail::restore(adam->mean(), file, concat("adam.", name, ".mean"), where);
+    detail::restore(adam->square(), file, concat("adam.", name, ".square"), where);
+    adam->set_steps(number(concat("adam.", name, ".steps")));
+  }
+  trainer.set_iteration(number("iteration"));
+}
+
+}  // namespace motiongan

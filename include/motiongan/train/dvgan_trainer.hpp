@@ -1,0 +1,147 @@
+// Training DVGAN (SPEC 4): critic steps and generator steps, nothing read back between them.
+#pragma once
+#include "motiongan/models/cnn_critic.hpp"
+#include "motiongan/models/dvgan.hpp"
+#include "motiongan/optim/adam.hpp"
+#include "motiongan/train/wgan_gp.hpp"
+#include "motiongan/train/windows.hpp"
+
+namespace motiongan {
+
+/// Every number of SPEC 4 and the critic's options of SPEC 3; the defaults are the paper's.
+struct DvganTrainOptions {
+  std::size_t iterations = 20'000;  ///< each is `critic_steps` critic steps and one generator step
+  std::size_t critic_steps = 10;
+  std::size_t batch = 64;
+  double lambda_gp = 10;    ///< weight of the gradient penalty
+  AdamOptions adam{};       ///< of both networks
+  bool input_shift = true;  ///< move each real/fake pair by up to N/2 frames at the critic's input
+  Validation validation = Validation::dense;
+  LevelWeights level_weights = LevelWeights::exp;
+  std::uint64_t seed = 1;
+};
+
+/// What the last iteration came to; reading it waits for the device.
+struct DvganLosses {
+  double wasserstein = 0;  ///< mean D(real) - mean D(fake) of the last critic step
+  double penalty = 0;      ///< mean (|gradient| - 1)^2
+  double generator = 0;    ///< -mean D(fake) of the generator's step
+};
+
+/// Trains a Dvgan on a data set. One critic step and one generator step are also callable by themselves.
+class DvganTrainer {
+ public:
+  DvganTrainer(Dvgan& model, const motion::Dataset& data, const DvganTrainOptions& options)
+      : model_(model),
+        options_(options),
+        windows_(model.context(), data),
+        critic_(Initializer(model.context(), model.options().seed + 1),
+                {.vocabulary = model.format().vocabulary.size(),
+                 .dof = model.format().dof(),
+                 .frames = model.format().frames,
+                 .hidden = model.options().hidden,
+                 .taps = model.options().taps,
+                 .validation = options.validation,
+                 .level_weights = options.level_weights}),
+        generator_adam_(named_parameters(model.generator()), options.adam),
+        critic_adam_(named_parameters(critic_), options.adam) {
+    require(options.batch > 0 && options.critic_steps > 0, "batch and critic_steps must be positive");
+    require(data.format.dof() == model.format().dof() && data.format.frames == model.format().frames &&
+                data.format.vocabulary.size() == model.format().vocabulary.size(),
+            "the data set (", data.format.dof(), " dof, ", data.format.frames, " frames, ",
+            data.format.vocabulary.size(), " words) does not fit the model (", model.format().dof(), ", ",
+            model.format().frames, ", ", model.format().vocabulary.size(), ")");
+    require((options.iterations + 1) * (options.critic_steps + 1) < (std::size_t{1} << 24),
+            options.iterations, " iterations of ", options.critic_steps,
+            " critic steps are more than the random numbers' counter holds (2^24 steps)");
+  }
+
+  Dvgan& model() { return model_; }
+  CnnCritic& critic() { return critic_; }
+  const DvganTrainOptions& options() const { return options_; }
+  std::size_t iteration() const { return iteration_; }
+  void set_iteration(std::size_t iteration) { iteration_ = iteration; }
+  Adam& generator_adam() { return generator_adam_; }
+  Adam& critic_adam() { return critic_adam_; }
+
+  /// critic_steps critic steps and a generator step.
+  void iterate() {
+    const std::size_t first = iteration_ * (options_.critic_steps + 1);
+    for (std::size_t i = 0; i < options_.critic_steps; ++i)
+      critic_step(static_cast<std::uint32_t>(first + i));
+    generator_step(static_cast<std::uint32_t>(first + options_.critic_steps));
+    ++iteration_;
+  }
+
+  /// One update of the critic; `step` numbers the step's random numbers.
+  void critic_step(std::uint32_t step) {
+    const Context& context = model_.context();
+    const RandomKey key{.seed = options_.seed, .step = step};
+    const Batch batch = windows_.draw(options_.seed, step, options_.batch);
+    Var fake;
+    {
+      const NoGrad values_only;
+      fake = make_fake(batch.text, key);
+    }
+    const Indices shift = draw_shift(key);
+    const Tensor real = shifted(Var::constant(batch.motion), shift).value();
+    const Var h_txt = critic_.encode_text(batch.text), pairs_txt = concat_axis({h_txt, h_txt}, 0);
+    critic_loss_ =
+        critic_loss([&](const Var& x) { return critic_(x, pairs_txt); },
+                    [&](const Var& x) { return critic_(x, h_txt); }, real, shifted(fake, shift).value(),
+                    random_uniform(context, key.with(Stream::mix), options_.batch), options_.lambda_gp);
+    critic_adam_.step(grad(critic_loss_.loss, critic_adam_.parameters()));
+    critic_loss_ = {
+        {}, critic_loss_.wasserstein.detach(), critic_loss_.penalty.detach(), {}};  // lets go of the graph
+  }
+
+  /// One update of the generator; the critic's parameters get no gradient.
+  void generator_step(std::uint32_t step) {
+    const RandomKey key{.seed = options_.seed, .step = step};
+    const Batch batch = windows_.draw(options_.seed, step, options_.batch);
+    const Var fake = shifted(make_fake(batch.text, key), draw_shift(key));
+    Var h_txt;
+    {
+      const NoGrad values_only;  // the critic's view of the text does not depend on the generator
+      h_txt = critic_.encode_text(batch.text);
+    }
+    const Var loss = generator_loss(critic_(fake, h_txt));
+    generator_adam_.step(grad(loss, generator_adam_.parameters()));
+    generator_loss_ = loss.detach();
+  }
+
+  DvganLosses losses() const {
+    require(!generator_loss_.empty(), "no iteration has run yet");
+    return {critic_loss_.wasserstein.item(), critic_loss_.penalty.item(), generator_loss_.item()};
+  }
+
+ private:
+  Var make_fake(const Sentences& text, const RandomKey& key) const {
+    const Context& context = model_.context();
+    const CnnGenerator& generator = model_.generator();
+    return generator(text, generator.noise(context, key, text.batch),
+                     generator.cuts(context, key, text.batch));
+  }
+
+  /// One shift of a whole number of frames in [-N/2, N/2] for each sample; empty when shifting is off.
+  Indices draw_shift(const RandomKey& key) const {
+    if (!options_.input_shift) return {};
+    const std::size_t frames = model_.format().frames, half = frames / 2;
+    return random_integers(model_.context(), key.with(Stream::shift), options_.batch, -static_cast<int>(half),
+                           2 * half + 1);
+  }
+  Var shifted(const Var& motion, const Indices& shift) const {
+    return shift.empty() ? motion : shift_frames(motion, shift, motion.dim(0), -1);
+  }
+
+  Dvgan& model_;
+  DvganTrainOptions options_;
+  WindowSampler windows_;
+  CnnCritic critic_;
+  Adam generator_adam_, critic_adam_;
+  CriticLoss critic_loss_;
+  Var generator_loss_;
+  std::size_t iteration_ = 0;
+};
+
+}  // namespace motiongan
