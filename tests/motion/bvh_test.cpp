@@ -2,9 +2,9 @@
 #include "motiongan/motion/bvh.hpp"
 
 #include <doctest/doctest.h>
+#include <unistd.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
 
@@ -267,7 +267,7 @@ TEST_CASE("write, read, write: the same text and the same numbers") {
 
 TEST_CASE("files: written whole, read back, clear about paths") {
   namespace fs = std::filesystem;
-  const fs::path folder = fs::temp_directory_path() / ("motiongan_bvh_test_" + std::to_string(std::rand()));
+  const fs::path folder = fs::temp_directory_path() / ("motiongan_bvh_test_" + std::to_string(::getpid()));
   fs::create_directories(folder);
   Clip clip = parse_bvh(replaced(arm, "\n", "\r\n"), "arm");
   write_bvh(folder / "walk 1.bvh", clip);

@@ -4,73 +4,13 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <set>
 #include <string>
 #include <vector>
 
-#include "motiongan/motion/bvh.hpp"
+#include "walking_clips.hpp"
 
 using namespace motiongan;
 using namespace motiongan::motion;
-namespace fs = std::filesystem;
-
-namespace {
-
-/// Walks along x at `speed` units a second from (start, 1, 5), bobbing; the arm swings about x.
-Motion walk(double seconds, double rate, double speed, double start = 0) {
-  Motion m;
-  m.skeleton.joints = {
-      {"Hips",
-       -1,
-       {0, 0, 0},
-       {Channel::x_position, Channel::y_position, Channel::z_position, Channel::z_rotation,
-        Channel::x_rotation, Channel::y_rotation},
-       {}},
-      {"Arm", 0, {1, 0, 0}, {Channel::z_rotation, Channel::x_rotation, Channel::y_rotation}, Vec3{1, 0, 0}}};
-  m.rate = rate;
-  m.frames = static_cast<std::size_t>(std::lround(seconds * rate));
-  for (std::size_t f = 0; f < m.frames; ++f) {
-    const double t = static_cast<double>(f) / rate;
-    m.rotations.insert(m.rotations.end(), {quat_from_expmap({0, 0.1 * std::sin(t), 0}),
-                                           quat_from_expmap({0.7 * std::sin(5 * t + start), 0, 0})});
-    m.positions.insert(m.positions.end(),
-                       {Vec3{start + speed * t, 1 + 0.1 * std::sin(9 * t), 5}, Vec3{1, 0, 0}});
-  }
-  return m;
-}
-
-std::vector<LabelledMotion> several(std::size_t count) {
-  std::vector<LabelledMotion> out;
-  for (std::size_t i = 0; i < count; ++i)
-    out.push_back({"clip" + std::to_string(i),
-                   walk(4 + 0.1 * double(i), 60, 1 + double(i % 3), double(i)),
-                   {"walk number " + std::to_string(i), "go"}});
-  return out;
-}
-
-DatasetOptions eight_at(double rate) {
-  DatasetOptions o;
-  o.frames = 8;
-  o.rate = rate;
-  return o;
-}
-
-/// A folder that is removed again.
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("motiongan_dataset_test_" + std::to_string(std::rand()));
-  Folder() { fs::create_directories(path); }
-  ~Folder() { fs::remove_all(path); }
-};
-
-std::set<std::string> ids(const std::vector<DatasetClip>& clips) {
-  std::set<std::string> out;
-  for (const DatasetClip& c : clips) out.insert(c.id);
-  return out;
-}
-
-}  // namespace
 
 TEST_CASE("windows: stride, starts, relative dimensions, and the way back to motion") {
   const std::vector<LabelledMotion> motions = several(6);
@@ -179,36 +119,6 @@ TEST_CASE("short clips are left out and named; if all are, what would fit is sai
       doctest::Contains("the longest, 'clip2', has 4.20 s: use at most 4 frames, or 1.91 frames"), Error);
 }
 
-TEST_CASE("the split is seeded, complete, and written down") {
-  DatasetOptions options = eight_at(4);
-  const Dataset a = Dataset::from_motions(several(12), options),
-                b = Dataset::from_motions(several(12), options);
-  CHECK(ids(a.train) == ids(b.train));
-  CHECK(a.train.size() == 8);
-  CHECK(a.test.size() == 4);
-  options.split_seed = 2;
-  CHECK(ids(Dataset::from_motions(several(12), options).train) != ids(a.train));
-  for (const std::string& id : ids(a.test)) CHECK(!ids(a.train).contains(id));
-  // The numbers themselves: the same on every machine and standard library.
-  CHECK(split_clips(8, 0.5, 1) == std::vector<bool>{false, false, true, true, true, false, false, true});
-  std::uint64_t state = 0;
-  CHECK(splitmix64(state) == 0xE220A8397B1DCDAFu);  // the published first value for seed 0
-  CHECK(split_clips(1, 0.67, 1) == std::vector<bool>{true});
-  for (const double share : {0.01, 0.5, 1.0}) {
-    const std::vector<bool> two = split_clips(2, share, 3);
-    CHECK(two[0] != two[1]);
-  }
-  CHECK_THROWS_AS(split_clips(2, 0, 1), Error);
-  CHECK_THROWS_AS(split_clips(2, 1.5, 1), Error);
-
-  const Folder folder;
-  a.write_split(folder.path / "split.tsv");
-  const std::string text = read_text(folder.path / "split.tsv", "split");
-  CHECK(text.starts_with("# split of 12 clips, seed 1, training share 0.67\n"));
-  for (const DatasetClip& clip : a.test) CHECK(text.find("\ntest\t" + clip.id + "\n") != text.npos);
-  for (const DatasetClip& clip : a.train) CHECK(text.find("\ntrain\t" + clip.id + "\n") != text.npos);
-}
-
 TEST_CASE("captions become sentences of the training vocabulary") {
   const Dataset data = Dataset::from_motions(several(6), eight_at(4));
   const Vocabulary& v = data.format.vocabulary;
@@ -290,51 +200,4 @@ TEST_CASE("the position of the joint that travels is the one that is kept, which
   const Dataset data = Dataset::from_motions(motions, eight_at(4));
   CHECK(data.format.layout.root() == 1);
   CHECK(data.format.layout.name(data.format.layout.position_dim()) == "Hips.position.x");
-}
-
-TEST_CASE("folders of BVH files") {
-  const Folder folder;
-  CHECK_THROWS_WITH_AS(Dataset::from_bvh(folder.path), doctest::Contains("no .bvh file"), Error);
-  CHECK_THROWS_WITH_AS(Dataset::from_bvh(folder.path / "none"), doctest::Contains("does not exist"), Error);
-  for (const char* name : {"a/walk.bvh", "b/walk.BVH", "jump_01.bvh", "b/run/07.bvh"}) {
-    const fs::path path = folder.path / name;
-    fs::create_directories(path.parent_path());
-    Clip clip = to_clip(walk(3, 60, 1), "x");
-    clip.channels.insert(clip.channels.begin(), clip.skeleton.channel_count(), 0.0);  // a T-pose
-    ++clip.frames;
-    for (std::size_t f = 1; f < clip.frames; ++f) clip.channels[f * 9 + 3] += 40.5;
-    write_bvh(path, clip);
-  }
-  DatasetOptions options = eight_at(4);
-  const Dataset named = Dataset::from_bvh(folder.path, options);
-  std::set<std::string> all = ids(named.train);
-  all.merge(ids(named.test));
-  CHECK(all == std::set<std::string>{"a/walk", "b/walk", "jump_01", "07"});
-  CHECK(named.named == 4);
-  CHECK(named.dropped_frames == 4);
-  for (const auto* part : {&named.train, &named.test})
-    for (const DatasetClip& clip : *part) {
-      CHECK(clip.frames == 180);
-      CHECK(clip.captions[0] == (clip.id == "07" ? "run" : clip.id == "jump_01" ? "jump" : "walk"));
-    }
-  write_text_atomically(folder.path / "captions.tsv",
-                        "walk\tgo ahead\nb/walk\tgo back\nb/walk\treturn\njump_01\tleap\n");
-  options.captions = folder.path / "captions.tsv";
-  options.first_frame = FirstFrame::keep;
-  const Dataset told = Dataset::from_bvh(folder.path, options);
-  CHECK(told.named == 1);
-  CHECK(told.dropped_frames == 0);
-  for (const auto* part : {&told.train, &told.test})
-    for (const DatasetClip& clip : *part) {
-      CHECK(clip.frames == 181);
-      if (clip.id == "b/walk") CHECK(clip.captions == std::vector<std::string>{"go back", "return"});
-      if (clip.id == "a/walk") CHECK(clip.captions == std::vector<std::string>{"go ahead"});
-    }
-  CHECK(Dataset::from_bvh(folder.path / "jump_01.bvh", options).train.size() == 1);
-  options.captions = folder.path / "missing.tsv";
-  CHECK_THROWS_WITH_AS(Dataset::from_bvh(folder.path, options),
-                       doctest::Contains("missing.tsv does not exist"), Error);
-  write_text_atomically(folder.path / "bad.bvh", "HIERARCHY\nNOISE");
-  CHECK_THROWS_WITH_AS(Dataset::from_bvh(folder.path, eight_at(4)),
-                       doctest::Contains("bad.bvh:2:1: found 'NOISE'"), Error);
 }
