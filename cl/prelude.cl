@@ -50,10 +50,24 @@ inline void store_part(realv v, global real* p, uint left) {
   for (uint j = 0; j < left; ++j) p[j] = lanes[j];
 }
 
-inline realv load_some(global const real* p, uint left) { return left >= VW ? vload(0, p) : load_part(p, left); }
+// PoCL's vstoreN writes pieces of 16 bytes; a vector type of lower alignment gives one instruction on a CPU.
+#ifdef DEVICE_IS_CPU
+#ifdef REAL_IS_DOUBLE
+typedef realv realv_anywhere __attribute__((aligned(8)));
+#else
+typedef realv realv_anywhere __attribute__((aligned(4)));
+#endif
+#define LOAD_VECTOR(p) (*(global const realv_anywhere*)(p))
+#define STORE_VECTOR(v, p) (*(global realv_anywhere*)(p) = (v))
+#else
+#define LOAD_VECTOR(p) vload(0, p)
+#define STORE_VECTOR(v, p) vstore(v, 0, p)
+#endif
+
+inline realv load_some(global const real* p, uint left) { return left >= VW ? LOAD_VECTOR(p) : load_part(p, left); }
 inline void store_some(realv v, global real* p, uint left) {
   if (left >= VW)
-    vstore(v, 0, p);
+    STORE_VECTOR(v, p);
   else
     store_part(v, p, left);
 }

@@ -10,7 +10,7 @@ kernel void sum_middle(global const real* x, uint x0, global real* out, uint out
   global const real* p = x + x0 + (o * count + first) * inner + i;
   realv sum = 0;
   if (left >= VW)
-    for (uint j = first; j < last; ++j, p += inner) sum += vload(0, p);
+    for (uint j = first; j < last; ++j, p += inner) sum += LOAD_VECTOR(p);
   else
     for (uint j = first; j < last; ++j, p += inner) sum += load_part(p, left);
   store_some(sum * scale, out + out0 + row * inner + i, left);
