@@ -150,8 +150,9 @@ class Context {
     std::size_t limit = options.memory_limit;
     if (const char* megabytes = std::getenv("MOTIONGAN_MEMORY_MB"); limit == 0 && megabytes) {
       const auto [end, error] = std::from_chars(megabytes, megabytes + std::strlen(megabytes), limit);
-      require(error == std::errc() && *end == '\0' && limit > 0, "MOTIONGAN_MEMORY_MB=\"", megabytes,
-              "\" is not a positive whole number");
+      require(error == std::errc() && *end == '\0' && limit > 0 &&
+                  limit <= std::numeric_limits<std::size_t>::max() / 1'000'000,
+              "MOTIONGAN_MEMORY_MB=\"", megabytes, "\" is not a positive whole number of megabytes");
       limit *= 1'000'000;
     }
     s.pool = std::make_unique<detail::BufferPool>(s.context.get(), limit ? limit : s.device.global_memory,

@@ -1,0 +1,191 @@
+// The Context: its buffer pool and limit, its environment variables, its errors.
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <motiongan/ops/elementwise.hpp>
+
+using namespace motiongan;
+
+namespace {
+
+template <class Action>
+std::string message_of(const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// An environment variable, set as long as this lives.
+class Setting {
+ public:
+  Setting(const char* name, const char* value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before;
+    setenv(name, value, 1);
+  }
+  ~Setting() {
+    if (before_)
+      setenv(name_, before_->c_str(), 1);
+    else
+      unsetenv(name_);
+  }
+
+ private:
+  const char* name_;
+  std::optional<std::string> before_;
+};
+
+}  // namespace
+
+TEST_CASE("a buffer that was given back serves again") {
+  const Context context;
+  const auto& now = context.statistics();
+  for (int i = 0; i < 3; ++i) const Tensor a(context, {100, 10}), b(context, {7});
+  CHECK(now.allocations == 2);
+  CHECK(now.bytes_in_use == 0);
+  CHECK(now.bytes_cached >= 4028);
+
+  {
+    const Tensor a(context, {100, 10});
+    CHECK(now.bytes_in_use >= 4000);
+    const Tensor same = a, piece = a.view(10, {5});  // they share its buffer
+    CHECK(now.allocations == 2);
+    const Tensor second(context, {100, 10});  // the first is in use
+    CHECK(now.allocations == 3);
+    CHECK(second.buffer() != a.buffer());
+  }
+  { const Tensor a_little_smaller(context, {990}); }
+  CHECK(now.allocations == 3);
+  { const Tensor much_smaller(context, {300}); }  // would waste the large one
+  CHECK(now.allocations == 4);
+  CHECK(now.peak_bytes == now.bytes_cached);
+
+  context.trim();
+  CHECK(now.bytes_cached == 0);
+  { const Tensor a(context, {100, 10}); }
+  CHECK(now.allocations == 5);
+}
+
+TEST_CASE("a view keeps the buffer after its tensor is gone") {
+  const Context context;
+  Tensor piece;
+  {
+    const Tensor whole = Tensor::from(context, {6}, std::vector<float>{1, 2, 3, 4, 5, 6});
+    piece = whole.view(2, {3});
+  }
+  const Tensor other = filled(context, {6}, 9);
+  CHECK(piece.to_host() == std::vector<float>{3, 4, 5});
+}
+
+TEST_CASE("the memory limit is kept, and the error says what was asked, is in use, and is allowed") {
+  const Context context({.memory_limit = 1'000'000});
+  const Tensor half(context, {125'000});  // 0.5 MB
+  const std::string text = message_of([&] { Tensor(context, {150'000}); });
+  CHECK(says(text, "out of device memory: 0.6 MB was asked"));
+  CHECK(says(text, "0.503 MB are in use of a limit of 1 MB"));
+  CHECK(says(text, "MOTIONGAN_MEMORY_MB"));
+  CHECK(context.statistics().bytes_in_use < 510'000);  // nothing leaked, and what fits still works
+  { const Tensor more(context, {110'000}); }
+  // Now 0.44 MB are cached: they make room for something of another size.
+  const Tensor other(context, {60'000});
+  CHECK(context.statistics().bytes_in_use + context.statistics().bytes_cached <= 1'000'000);
+}
+
+TEST_CASE("one allocation larger than the device allows") {
+  const Context context({.memory_limit = std::size_t{1} << 60});
+  const std::size_t too_many = context.device().max_allocation / 4 + 1024;
+  const std::string text = message_of([&] { Tensor(context, {too_many}); });
+  CHECK(says(text, "out of device memory: one buffer of"));
+  CHECK(says(text, "in one allocation"));
+}
+
+TEST_CASE("MOTIONGAN_MEMORY_MB") {
+  {
+    const Setting setting("MOTIONGAN_MEMORY_MB", "2");
+    const Context context;
+    CHECK_NOTHROW(Tensor(context, {400'000}));
+    CHECK(says(message_of([&] { Tensor(context, {600'000}); }), "a limit of 2 MB"));
+    const Context more({.memory_limit = 4'000'000});  // the option counts more than the variable
+    CHECK_NOTHROW(Tensor(more, {600'000}));
+  }
+  for (const std::string garbage :
+       {"", "0", "much", "12 GB", "-5", "1.5", "99999999999999999", "18446744073710"}) {
+    const Setting setting("MOTIONGAN_MEMORY_MB", garbage.c_str());
+    const std::string text = message_of([] { Context(); });
+    CAPTURE(garbage);
+    CHECK(says(text, concat("MOTIONGAN_MEMORY_MB=\"", garbage, "\"")));
+  }
+}
+
+TEST_CASE("a device that is not there is an error, by option and by variable") {
+  CHECK(says(message_of([] { Context({.device = "no such device"}); }), "\"no such device\""));
+  const Setting setting("MOTIONGAN_DEVICE", "nor this one");
+  CHECK(says(message_of([] { Context(); }), "\"nor this one\""));
+}
+
+TEST_CASE("a context describes itself") {
+  const Context context;
+  CHECK(says(context.description(), context.device().name));
+  CHECK(says(context.description(), "float"));
+  CHECK(context.real_size() == 4);
+  const Context copy = context, other;
+  CHECK(copy == context);
+  CHECK_FALSE(other == context);
+}
+
+TEST_CASE("errors of launches name kernel, file, sizes and shapes") {
+  const Context context;
+  const Tensor x = filled(context, {3, 5}, 1), out(context, {3, 5});
+  CHECK(says(message_of([&] { context.launch("nowhere", "fill", Grid::items(1), x); }),
+             "there is no kernel file cl/nowhere.cl"));
+
+  const std::string unknown =
+      message_of([&] { context.launch("elementwise", "no_such_kernel", Grid::items(1), x); });
+  CHECK(says(unknown, "kernel no_such_kernel of cl/elementwise.cl"));
+  CHECK(says(unknown, "CL_INVALID_KERNEL_NAME"));
+
+  const std::string extra = message_of(
+      [&] { context.launch("elementwise", "fill", Grid::items(15), x, std::size_t{15}, Real{1}, Real{2}); });
+  CHECK(says(extra, "argument 4 of kernel fill"));
+
+  const std::size_t large = std::size_t{1} << 20;  // items in one group: no device takes that
+  const std::string grid = message_of([&] {
+    context.launch("elementwise", "affine", Grid{1, {large, 1, 1}, {large, 1, 1}}, x, out, x.size(),
+                   Real{2.5}, Real{0});
+  });
+  CHECK(says(grid, "clEnqueueNDRangeKernel failed with CL_INVALID_WORK"));
+  CHECK(says(grid, "kernel affine of cl/elementwise.cl"));
+  CHECK(says(grid, "global size 1048576x1x1, local size 1048576"));
+  CHECK(says(grid, "arguments [3, 5] [3, 5] 15 2.5 0"));
+
+  CHECK(says(message_of([&] {
+               context.launch("elementwise", "fill", Grid::items(1), x, std::size_t{1} << 33, Real{0});
+             }),
+             "kernel fill: 8589934592 does not fit 32 bits"));
+
+  // The context works on after all of that.
+  CHECK(affine(Var::constant(x), 2).value().to_host() == std::vector<float>(15, 2));
+}
+
+TEST_CASE("an empty grid launches nothing") {
+  const Context context;
+  const std::size_t before = context.statistics().launches;
+  context.launch("elementwise", "fill", Grid::items(0), Tensor(context, {1}), std::size_t{0}, Real{0});
+  CHECK(context.statistics().launches == before);
+}
+
+TEST_CASE("statistics count launches, reads and writes") {
+  const Context context;
+  const auto& now = context.statistics();
+  const Tensor x = Tensor::from(context, {2}, std::vector<float>{1, 2});
+  CHECK(now.writes == 1);
+  const Var y = affine(Var::constant(x), 3);
+  CHECK(now.launches == 1);
+  CHECK(now.reads == 0);
+  CHECK(y.value().to_host() == std::vector<float>{3, 6});
+  CHECK(now.reads == 1);
+}

@@ -1,0 +1,106 @@
+// Choosing a device by a wish, on lists made by hand.
+#include <doctest/doctest.h>
+
+#include <motiongan/core/device.hpp>
+
+using namespace motiongan;
+
+namespace {
+
+Device made(const char* name, const char* platform, cl_device_type type) {
+  Device device;
+  device.name = name;
+  device.platform_name = platform;
+  device.type = type;
+  return device;
+}
+
+/// A CPU first: the loader's order is no order of merit.
+const std::vector<Device> four{
+    made("pthread-epyc", "Portable Computing Language", CL_DEVICE_TYPE_CPU),
+    made("GeForce RTX 3060", "NVIDIA CUDA", CL_DEVICE_TYPE_GPU),
+    made("GeForce RTX 4090", "NVIDIA CUDA", CL_DEVICE_TYPE_GPU),
+    made("Odd: 7", "Somebody's Accelerators", CL_DEVICE_TYPE_ACCELERATOR),
+};
+
+std::string chosen(std::string_view wish, const std::vector<Device>& among = four) {
+  return choose_device(among, wish).name;
+}
+
+std::string message(std::string_view wish, const std::vector<Device>& among = four) {
+  try {
+    choose_device(among, wish);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+bool says(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("no wish: a GPU where there is one, else the first") {
+  CHECK(chosen("") == "GeForce RTX 3060");
+  CHECK(chosen("", {four[0], four[3]}) == "pthread-epyc");
+  CHECK(chosen("", {four[3], four[0]}) == "Odd: 7");
+}
+
+TEST_CASE("kinds, parts of names in any case, and platforms") {
+  CHECK(chosen("cpu") == "pthread-epyc");
+  CHECK(chosen("CPU") == "pthread-epyc");
+  CHECK(chosen("gpu") == "GeForce RTX 3060");
+  CHECK(chosen("4090") == "GeForce RTX 4090");
+  CHECK(chosen("geforce rtx 4") == "GeForce RTX 4090");
+  CHECK(chosen("nvidia") == "GeForce RTX 3060");
+  CHECK(chosen("portable") == "pthread-epyc");
+  CHECK(chosen("accelerators") == "Odd: 7");
+}
+
+TEST_CASE("an index takes a later match") {
+  CHECK(chosen("gpu:0") == "GeForce RTX 3060");
+  CHECK(chosen("gpu:1") == "GeForce RTX 4090");
+  CHECK(chosen("NVIDIA:1") == "GeForce RTX 4090");
+  CHECK(chosen("cpu:0") == "pthread-epyc");
+  CHECK(chosen(":3") == "Odd: 7");
+  CHECK(chosen("odd:") == "Odd: 7");  // this colon belongs to the name
+}
+
+TEST_CASE("nothing fits: the message says what was asked and lists what there is") {
+  const std::string absent = message("gpu", {four[0], four[3]});
+  CHECK(says(absent, "\"gpu\""));
+  CHECK(says(absent, "0 match"));
+  CHECK(says(absent, "cpu  pthread-epyc  (Portable Computing Language)"));
+  CHECK(says(absent, "other  Odd: 7"));
+  CHECK(says(absent, "NAME:index"));
+
+  const std::string late = message("nvidia:2");
+  CHECK(says(late, "2 match the name, index 2 was asked"));
+  CHECK(says(late, "gpu  GeForce RTX 4090"));
+
+  CHECK(says(message("radeon"), "\"radeon\""));
+  CHECK(says(message("gpu:x"), "\"gpu:x\""));
+  CHECK(says(message("gpu:99999999999999999999999"), "no OpenCL device matches"));
+}
+
+TEST_CASE("no device at all: the message says what to install") {
+  for (const char* wish : {"", "cpu", "gpu:1"}) {
+    CHECK(says(message(wish, {}), "no OpenCL device found"));
+    CHECK(says(message(wish, {}), "pocl-opencl-icd"));
+  }
+}
+
+TEST_CASE("the devices of this machine have names, memory and vectors") {
+  const std::vector<Device> here = all_devices();
+  REQUIRE_FALSE(here.empty());
+  for (const Device& device : here) {
+    CAPTURE(device.name);
+    CHECK_FALSE(device.name.empty());
+    CHECK_FALSE(device.platform_name.empty());
+    CHECK(device.compute_units > 0);
+    CHECK(device.global_memory > 0);
+    CHECK(device.max_allocation > 0);
+    CHECK(device.max_allocation <= device.global_memory);
+    CHECK(choose_device(here, device.name).name == device.name);
+  }
+}
