@@ -1,5 +1,8 @@
 // A training run on disk: everything that the next iteration depends on, in one file.
 #pragma once
+#include <charconv>
+#include <map>
+
 #include "motiongan/train/dvgan_trainer.hpp"
 
 namespace motiongan {
@@ -34,12 +37,52 @@ inline void restore(Tensor& t, const io::SafeTensors& file, const std::string& n
   t.write(std::span<const double>(values));
 }
 
+/// A checkpoint's metadata `key`. Error where there is none; `where` names the file.
+inline const std::string& checkpoint_text(const io::SafeTensors& file, const std::string& key,
+                                          const std::string& where) {
+  const auto found = file.metadata.find(key);
+  require(found != file.metadata.end(), where, ": not a checkpoint of a training run (no \"", key,
+          "\" in its metadata)");
+  return found->second;
+}
+
+/// The same as a whole number.
+inline std::size_t checkpoint_number(const io::SafeTensors& file, const std::string& key,
+                                     const std::string& where) {
+  const std::string& value = checkpoint_text(file, key, where);
+  std::size_t n = 0;
+  const auto [end, code] = std::from_chars(value.data(), value.data() + value.size(), n);
+  require(code == std::errc() && end == value.data() + value.size(), where, ": \"", key, "\" is \"", value,
+          "\", expected a whole number");
+  return n;
+}
+
 }  // namespace detail
+
+/// What the maker of a run wants to find again in its checkpoint, such as where the data came from.
+using RunNotes = std::map<std::string, std::string>;
+
+/// What a checkpoint says of its run without a device: how far it is, and the notes.
+struct RunRecord {
+  std::size_t iteration = 0;
+  RunNotes notes;
+};
+
+inline RunRecord read_run_record(const io::SafeTensors& checkpoint, const std::string& where) {
+  RunRecord record{detail::checkpoint_number(checkpoint, "iteration", where), {}};
+  for (const auto& [key, value] : checkpoint.metadata)
+    if (key.starts_with("note.")) record.notes[key.substr(5)] = value;
+  return record;
+}
+inline RunRecord read_run_record(const std::filesystem::path& checkpoint) {
+  return read_run_record(io::SafeTensors::read(checkpoint), checkpoint.string());
+}
 
 /// Writes the run's state: both networks, both optimisers, the position. Random numbers have no state: they
 /// are named by seed and step. The file is written beside and renamed, so a run killed at any moment leaves
 /// the last whole one.
-inline void save_checkpoint(DvganTrainer& trainer, const std::filesystem::path& path) {
+inline void save_checkpoint(DvganTrainer& trainer, const std::filesystem::path& path,
+                            const RunNotes& notes = {}) {
   io::SafeTensors file;
   trainer.model().describe(file);
   io::save_parameters(named_parameters(trainer.model().generator()), file, "generator.");
@@ -52,6 +95,7 @@ inline void save_checkpoint(DvganTrainer& trainer, const std::filesystem::path& 
   }
   file.metadata["training"] = detail::to_json(trainer.options()).dump();
   file.metadata["iteration"] = std::to_string(trainer.iteration());
+  for (const auto& [key, value] : notes) file.metadata["note." + key] = value;
   file.write(path);
 }
 
@@ -60,19 +104,8 @@ inline void save_checkpoint(DvganTrainer& trainer, const std::filesystem::path& 
 inline void load_checkpoint(DvganTrainer& trainer, const std::filesystem::path& path) {
   const std::string where = path.string();
   const io::SafeTensors file = io::SafeTensors::read(path);
-  const auto text = [&](const std::string& key) -> const std::string& {
-    const auto found = file.metadata.find(key);
-    require(found != file.metadata.end(), where, ": not a checkpoint of a training run (no \"", key,
-            "\" in its metadata)");
-    return found->second;
-  };
-  const auto number = [&](const std::string& key) {
-    const std::string& value = text(key);
-    std::size_t n = 0;
-    const auto [end, code] = std::from_chars(value.data(), value.data() + value.size(), n);
-    require(code == std::errc() && end == value.data() + value.size(), where, ": \"", key, "\" is \"", value,
-            "\", expected a whole number");
-    return n;
+  const auto text = [&](const char* key) -> const std::string& {
+    return detail::checkpoint_text(file, key, where);
   };
   io::SafeTensors expected;
   trainer.model().describe(expected);
@@ -93,9 +126,9 @@ inline void load_checkpoint(DvganTrainer& trainer, const std::filesystem::path& 
        {std::pair{"generator", &trainer.generator_adam()}, std::pair{"critic", &trainer.critic_adam()}}) {
     detail::restore(adam->mean(), file, concat("adam.", name, ".mean"), where);
     detail::restore(adam->square(), file, concat("adam.", name, ".square"), where);
-    adam->set_steps(number(concat("adam.", name, ".steps")));
+    adam->set_steps(detail::checkpoint_number(file, concat("adam.", name, ".steps"), where));
   }
-  trainer.set_iteration(number("iteration"));
+  trainer.set_iteration(detail::checkpoint_number(file, "iteration", where));
 }
 
 }  // namespace motiongan

@@ -18,7 +18,8 @@ struct RunOptions {
   double max_minutes = 0;         ///< stop after that long; 0: no limit
   std::function<bool()> should_stop = {};  ///< asked after every iteration
   std::function<void(std::size_t iteration, const DvganLosses&)> report =
-      {};  ///< called with every row of the log
+      {};            ///< called with every row of the log
+  RunNotes notes{};  ///< kept in the checkpoint, where read_run_record() finds them
 };
 
 /// What a save_dir holds.
@@ -62,7 +63,7 @@ inline RunResult train(Dvgan& model, const motion::Dataset& data, const DvganTra
   }
   const auto save = [&] {
     if (!keeps) return;
-    save_checkpoint(trainer, files.checkpoint());
+    save_checkpoint(trainer, files.checkpoint(), run.notes);
     model.save(files.generator());
     io::SafeTensors critic;
     io::save_parameters(named_parameters(trainer.critic()), critic);
