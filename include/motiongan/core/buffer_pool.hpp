@@ -16,6 +16,7 @@ struct ContextStatistics {
   std::size_t reads = 0;         ///< read-backs from device to host (each waits for the queue)
   std::size_t writes = 0;        ///< uploads from host to device
   std::size_t launches = 0;      ///< kernels enqueued
+  double gemm_flops = 0;         ///< multiplications and additions in matrix products
   std::size_t bytes_in_use = 0;  ///< in live tensors
   std::size_t bytes_cached = 0;  ///< in buffers that wait to be used again
   std::size_t peak_bytes = 0;    ///< most that was ever in use and cached together

@@ -168,6 +168,8 @@ class Context {
   unsigned vector_width() const { return state_->programs->vector_width(); }
   cl_command_queue queue() const { return state_->queue.get(); }
   const ContextStatistics& statistics() const { return state_->statistics; }
+  /// Counts the arithmetic of a matrix product; benchmarks put it beside the device's peak.
+  void count_gemm_flops(double flops) const { state_->statistics.gemm_flops += flops; }
   bool operator==(const Context& other) const { return state_ == other.state_; }
 
   /// "NAME (PLATFORM), 2 compute units, 6.1 GB, float"

@@ -35,6 +35,8 @@ inline GemmEngine gemm_engine_wish() {
 inline void gemm(const Context& context, const GemmCall& call, GemmEngine engine = GemmEngine::automatic) {
   detail::check_gemm(context, call);
   if (call.m == 0 || call.n == 0 || call.batch == 0) return;
+  context.count_gemm_flops(2.0 * static_cast<double>(call.m * call.n) *
+                           static_cast<double>(call.k * call.segments * call.batch));
   if (engine == GemmEngine::automatic) engine = detail::gemm_engine_wish();
   if (engine == GemmEngine::automatic)
     engine = context.device().is_cpu() ? GemmEngine::native : GemmEngine::clblast;
