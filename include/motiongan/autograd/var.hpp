@@ -63,18 +63,18 @@ struct Node : std::enable_shared_from_this<Node> {
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
   ~Node() {
-    // Iterative: the chain of an LSTM over many steps would overflow the stack.
-    std::vector<std::shared_ptr<Node>> doomed;
-    const auto take_inputs = [&doomed](Node& node) {
+    // Iterative: the chain of an LSTM over many steps would overflow the stack. A node that an operation uses
+    // twice is held here twice, and goes with the second hold.
+    std::vector<std::shared_ptr<Node>> held;
+    const auto take_inputs = [&held](Node& node) {
       for (Var& input : node.inputs)
-        if (input.node_ && input.node_.use_count() == 1) doomed.push_back(std::move(input.node_));
-      node.inputs.clear();
+        if (input.node_) held.push_back(std::move(input.node_));
     };
     take_inputs(*this);
-    while (!doomed.empty()) {
-      const std::shared_ptr<Node> node = std::move(doomed.back());
-      doomed.pop_back();
-      take_inputs(*node);
+    while (!held.empty()) {
+      const std::shared_ptr<Node> node = std::move(held.back());
+      held.pop_back();
+      if (node.use_count() == 1) take_inputs(*node);
     }
   }
 

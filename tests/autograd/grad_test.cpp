@@ -1,0 +1,205 @@
+// The sweep: what it computes, what it leaves out, what it refuses.
+#include <doctest/doctest.h>
+
+#include <motiongan/core/random.hpp>
+#include <motiongan/ops/lstm.hpp>
+#include <motiongan/ops/taps.hpp>
+#include <numeric>
+
+#include "../support/check_grads.hpp"
+
+using namespace motiongan;
+using testing::double_context;
+
+namespace {
+
+Var leaf(std::vector<double> values) {
+  const std::size_t n = values.size();
+  return Var::leaf(Tensor::from(double_context(), {n}, values));
+}
+Var constant(std::vector<double> values) { return leaf(std::move(values)).detach(); }
+std::vector<double> host(const Var& v) { return v.value().to_host<double>(); }
+
+/// x itself; `asked` counts how often a derivative by it was computed.
+Var watched(const Var& x, int& asked) {
+  return record("watched", {x}, x.value(),
+                [&asked](const Node&, const Var& g, const Needs&) -> std::vector<Var> {
+                  ++asked;
+                  return {g};
+                });
+}
+
+void check_near(const std::vector<double>& found, const std::vector<double>& expected) {
+  REQUIRE(found.size() == expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i)
+    CHECK(found[i] == doctest::Approx(expected[i]).epsilon(1e-12));
+}
+
+}  // namespace
+
+TEST_CASE("gradients are wanted where a leaf went in, and only there") {
+  const Var x = leaf({1, 2}), c = constant({3, 4});
+  CHECK(x.requires_grad());
+  CHECK_FALSE(c.requires_grad());
+  CHECK((x + c).requires_grad());
+  CHECK((c * x).requires_grad());
+  CHECK_FALSE((c + c).requires_grad());
+  CHECK_FALSE((x + c).detach().requires_grad());
+  CHECK_FALSE(Var().requires_grad());
+  CHECK((c + c).node()->inputs.empty());
+}
+
+TEST_CASE("NoGrad records nothing, and ends with its scope") {
+  const Var x = leaf({1, 2});
+  {
+    const NoGrad scope;
+    const Var y = x * x;
+    CHECK_FALSE(y.requires_grad());
+    CHECK(y.node()->inputs.empty());
+    CHECK_FALSE(y.node()->vjp);
+    CHECK(host(y) == std::vector<double>{1, 4});
+    {
+      const NoGrad inner;
+      const NoGrad off(false);  // does not switch recording on again
+      CHECK_FALSE((x + x).requires_grad());
+    }
+    CHECK_FALSE((x + x).requires_grad());
+  }
+  CHECK((x * x).requires_grad());
+}
+
+TEST_CASE("seeds: ones where none is given, weights where one is, and their shapes are checked") {
+  const Var x = leaf({1, 2, 3});
+  check_near(host(grad(square(x), {x})[0]), {2, 4, 6});
+  check_near(host(grad({square(x)}, {constant({1, 10, 100})}, {x})[0]), {2, 40, 600});
+  check_near(host(grad({square(x), 5 * x}, {Var(), constant({1, 0, 2})}, {x})[0]), {7, 4, 16});
+  CHECK_THROWS_WITH_AS(grad({square(x)}, {constant({1, 2})}, {x}), "grad: the seed is [2], the output [3]",
+                       Error);
+  CHECK_THROWS_WITH_AS(grad({square(x)}, {}, {x}), "grad: 1 outputs but 0 seeds", Error);
+}
+
+TEST_CASE("a constant cannot be differentiated by") {
+  const Var x = leaf({1}), c = constant({2});
+  CHECK_THROWS_AS(grad(x * c, {c}), Error);
+  CHECK_THROWS_AS(grad(x * c, {x.detach()}), Error);
+  CHECK_THROWS_AS(grad(x * x, {Var()}), Error);
+}
+
+TEST_CASE("an input without influence has a gradient of zeros") {
+  const Var x = leaf({1, 2}), unused = leaf({5, 6, 7});
+  const std::vector<Var> g = grad(square(x), {x, unused});
+  check_near(host(g[0]), {2, 4});
+  CHECK(host(g[1]) == std::vector<double>{0, 0, 0});
+  // One that is younger than the output, and one that is cut off.
+  const Var y = square(x), later = square(leaf({1, 2}));
+  CHECK(host(grad(y, {later})[0]) == std::vector<double>{0, 0});
+  CHECK(host(grad(constant({3}), {x})[0]) == std::vector<double>{0, 0});
+}
+
+TEST_CASE("outputs and values half way may be inputs") {
+  const Var x = leaf({3}), y = square(x), z = square(y);
+  CHECK(host(grad(z, {z})[0]) == std::vector<double>{1});
+  const std::vector<Var> g = grad(z, {y, x, z});
+  check_near(host(g[0]), {18});
+  check_near(host(g[1]), {108});
+  check_near(host(g[2]), {1});
+}
+
+TEST_CASE("one value used several times: its gradients add up") {
+  const Var x = leaf({2});
+  check_near(host(grad(x * x * x, {x})[0]), {12});
+  check_near(host(grad(x + x + x, {x})[0]), {3});
+  const Var y = tanh(x);
+  check_near(host(grad(y * y + 3 * y, {x})[0]), {(2 * std::tanh(2) + 3) * (1 - std::tanh(2) * std::tanh(2))});
+  check_near(host(grad({y, y}, {Var(), Var()}, {y})[0]), {2});
+  check_near(host(grad(x * x, {x, x})[1]), {4});
+}
+
+TEST_CASE("branches that lead to no wanted input are not computed") {
+  int left = 0, right = 0;
+  const Var a = leaf({1, 2}), b = leaf({3, 4});
+  const Var z = watched(square(a), left) * watched(square(b), right);
+  grad(z, {a});
+  CHECK(left == 1);
+  CHECK(right == 0);
+  grad(z, {a, b});
+  CHECK(left == 2);
+  CHECK(right == 1);
+
+  // An op is told which of its inputs to care for, and what is older than the wanted input is not visited.
+  const Var middle = watched(square(a), left), end = square(middle);
+  left = 0;
+  grad(end, {middle});
+  CHECK(left == 0);
+  const auto launches = [](const auto& action) {
+    const std::size_t before = double_context().statistics().launches;
+    action();
+    return double_context().statistics().launches - before;
+  };
+  const Var product = a * b;
+  const std::size_t one = launches([&] { grad(product, {a}); }), both = launches([&] {
+                                                                   grad(product, {a, b});
+                                                                 });
+  CHECK(one == 2);   // the seed and g * b
+  CHECK(both == 3);  // and g * a
+}
+
+TEST_CASE("without create_graph the result carries no graph, with it it can be differentiated again") {
+  const Var x = leaf({0.5, -1});
+  const Var plain = grad(x * x * x, {x})[0];
+  CHECK_FALSE(plain.requires_grad());
+  CHECK(plain.node()->inputs.empty());
+  CHECK_THROWS_AS(grad(leaf({1}) * leaf({1}), {plain}), Error);
+  const Var slope = grad(x * x * x, {x}, {.create_graph = true})[0];
+  CHECK(slope.requires_grad());
+  check_near(host(grad(slope, {x})[0]), {3, -6});
+  const NoGrad scope;  // recording is off for the sweep too
+  CHECK_FALSE(grad(slope, {x}, {.create_graph = true})[0].requires_grad());
+}
+
+TEST_CASE("third derivative of x^2 exp(a x)") {
+  const double a = 0.7;
+  const std::vector<double> at{-1.3, 0, 0.4, 2};
+  const Var x = leaf(at);
+  Var d = x * x * exp(a * x);
+  for (int order = 1; order <= 3; ++order) d = grad(d, {x}, {.create_graph = order < 3})[0];
+  std::vector<double> expected;
+  for (double v : at) expected.push_back(std::exp(a * v) * (a * a * a * v * v + 6 * a * a * v + 6 * a));
+  check_near(host(d), expected);
+}
+
+TEST_CASE("a mixed derivative does not depend on the order") {
+  const Var x = leaf({0.3, -0.8}), y = leaf({1.1, 0.4});
+  const Var f = tanh(x * y) * exp(x - y);
+  const Var by_x = grad(f, {x}, {.create_graph = true})[0], by_y = grad(f, {y}, {.create_graph = true})[0];
+  check_near(host(grad(by_x, {y})[0]), host(grad(by_y, {x})[0]));
+}
+
+TEST_CASE("a wrong derivative of an op is named") {
+  const Var x = leaf({1, 2});
+  const Var y = record("crooked", {x}, x.value(),
+                       [](const Node&, const Var& g, const Needs&) -> std::vector<Var> { return {sum(g)}; });
+  CHECK_THROWS_WITH_AS(grad(y, {x}), "derivative of crooked by input 0 has shape [1] instead of [2]", Error);
+}
+
+TEST_CASE("an empty Var says so") { CHECK_THROWS_WITH_AS(Var().value(), "an empty Var has no value", Error); }
+
+TEST_CASE("gradients of two runs are equal bit for bit") {
+  const auto run = [] {
+    const Context context;
+    const auto random = [&](Stream stream, std::size_t a, std::size_t b, std::size_t c) {
+      return Var::leaf(random_normal(context, {.seed = 5, .stream = stream}, a, b, c));
+    };
+    const Var x = random(Stream::noise, 17, 5, 33), w = random(Stream::noise + 1, 3, 20, 33),
+              bias = reshape(random(Stream::noise + 2, 1, 1, 20), {20});
+    const Var y = taps(x, w, {-1, 0, 1}, 17, false, {.bias = bias, .relu = true});
+    const Var slope = grad(mean(square(y)), {x}, {.create_graph = true})[0];
+    std::vector<std::vector<float>> all;
+    for (const Var& g : grad(sum(sqrt(square(slope) + 1e-12)), {x, w, bias}))
+      all.push_back(g.value().to_host());
+    return all;
+  };
+  const auto first = run();
+  CHECK(run() == first);
+  CHECK(testing::dot({first[1].begin(), first[1].end()}, {first[1].begin(), first[1].end()}) > 0);
+}
