@@ -61,7 +61,8 @@ std::vector<Measured> ours(const Context& context, double seconds) {
   std::uint32_t step = 0;
   const auto fake = [&] {
     const RandomKey key{.seed = 1, .step = ++step};
-    return generator(text, generator.noise(context, key, batch), generator.cuts(context, key, batch));
+    const Indices cut = generator.cuts(context, key, batch);
+    return generator(text, generator.noise(context, key, batch, cut), cut);
   };
   const auto sample = [&] {
     const NoGrad values_only;

@@ -13,15 +13,15 @@ kernel void copy_runs(global const real* x, uint x0, uint x_stride, global real*
   store_some(v, to, left);
 }
 
-/// out[t, b, :] = x[t + sign*offset[b], b, :], zero where that frame does not exist.
+/// out[t, b, :] = x[t + first + sign*offset[b], b, :], or `outside` where that frame does not exist.
 kernel void shift_frames(global const real* x, uint x0, global const int* offset, global real* out, uint out0,
-                         uint frames_in, uint frames_out, uint batch, uint channels, int sign) {
+                         uint frames_in, uint frames_out, uint batch, uint channels, int first, int sign, real outside) {
   const uint columns = (channels + VW - 1) / VW, item = get_global_id(0);
   const uint row = item / columns, c = item % columns * VW;
   if (row >= frames_out * batch) return;
   const uint b = row % batch, left = channels - c;
-  const int t = (int)(row / batch) + sign * offset[b];
-  realv v = 0;
+  const int t = (int)(row / batch) + first + sign * offset[b];
+  realv v = outside;
   if (t >= 0 && t < (int)frames_in) v = load_some(x + x0 + ((uint)t * batch + b) * channels + c, left);
   store_some(v, out + out0 + row * channels + c, left);
 }

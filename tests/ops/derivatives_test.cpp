@@ -84,6 +84,10 @@ TEST_CASE("layout") {
           {x, randn({axis == 0 ? 2u : 5u, axis == 1 ? 2u : 3u, axis == 2 ? 2u : 4u})});
   }
   check("shift_frames", [&](auto& v) { return square(shift_frames(v[0], offset, 4)); }, {x});
+  check(
+      "shift_frames, outside",
+      [&](auto& v) { return square(shift_frames(v[0], offset, 4, {.first = 1, .sign = -1, .outside = 3})); },
+      {x});
   for (std::size_t frames : {1, 2, 5, 6})
     check("pair_means", [](auto& v) { return square(pair_means(v[0])); }, {randn({frames, 2, 3})});
   check("gather_rows", [&](auto& v) { return square(gather_rows(v[0], index)); }, {randn({3, 5})});

@@ -48,7 +48,7 @@ struct RandomKey {
   Stream stream = Stream::noise;
   std::uint32_t step = 0;  ///< at most 2^24 - 1; the stream fills the low 8 bits of the same word
   std::uint32_t first_sample = 0;
-  std::uint32_t first_frame = 0;
+  std::int32_t first_frame = 0;
 
   RandomKey with(Stream other) const {
     RandomKey key = *this;
@@ -71,13 +71,15 @@ inline std::size_t random_below(const RandomKey& key, std::uint32_t sample, std:
   return static_cast<std::size_t>((std::uint64_t{random_word(key, sample, position)} * count) >> 32);
 }
 
-/// Standard normal numbers, [frames, batch, channels].
+/// Standard normal numbers, [frames, batch, channels]. Row t is frame key.first_frame + t, counted from
+/// `frame_of`[b] where that is given: a frame's numbers do not depend on where the array begins.
 inline Tensor random_normal(const Context& context, const RandomKey& key, std::size_t frames,
-                            std::size_t batch, std::size_t channels) {
+                            std::size_t batch, std::size_t channels, const Indices& frame_of = {}) {
   Tensor out(context, {frames, batch, channels});
   context.launch("random", "random_normal", Grid::items(frames * batch * ((channels + 63) / 64)), out, frames,
                  batch, channels, key.seed_low(), key.seed_high(), static_cast<cl_uint>(key.stream), key.step,
-                 key.first_sample, key.first_frame);
+                 key.first_sample, key.first_frame,
+                 frame_of.empty() ? static_cast<cl_mem>(nullptr) : frame_of.buffer());
   return out;
 }
 

@@ -33,22 +33,36 @@ class CnnGenerator {
   /// Noise levels are 0 .. levels(), of 2^i frames each.
   std::size_t levels() const { return levels_; }
 
-  /// z_i [2^i, B, k] for every level, keyed by sample: a sample's noise does not depend on its batch.
-  std::vector<Var> noise(const Context& context, const RandomKey& key, std::size_t batch) const {
-    std::vector<Var> z;
-    for (std::size_t i = 0; i <= levels_; ++i)
-      z.push_back(Var::constant(
-          random_normal(context, key.with(Stream::noise + i), std::size_t{1} << i, batch, options_.hidden)));
-    return z;
-  }
-
   /// Where each sample's N frames are cut from the 2N made: uniform in 0..N. Empty without final cut.
   Indices cuts(const Context& context, const RandomKey& key, std::size_t batch) const {
     return options_.final_cut ? random_integers(context, key.with(Stream::cut), batch, 0, options_.frames + 1)
                               : Indices();
   }
 
-  /// Motion [N, B, M] for a batch of sentences; `cut` as cuts() gives it.
+  /// z_i [2^i, B, k] for every level, keyed by sample: a sample's noise does not depend on its batch. With
+  /// final cut, the last level's is made only for the frames that the cut needs, [N + 2*reach, B, k].
+  std::vector<Var> noise(const Context& context, const RandomKey& key, std::size_t batch,
+                         const Indices& cut) const {
+    std::vector<Var> z;
+    for (std::size_t i = 0; i <= levels_; ++i) {
+      RandomKey level = key.with(Stream::noise + i);
+      const bool last = options_.final_cut && i == levels_;
+      if (last) level.first_frame = -static_cast<std::int32_t>(reach());
+      z.push_back(
+          Var::constant(last ? random_normal(context, level, kept_frames(), batch, options_.hidden, cut)
+                             : random_normal(context, level, std::size_t{1} << i, batch, options_.hidden)));
+    }
+    return z;
+  }
+
+  /// Of noise for all 2N frames of the last level, what the final cut needs: for callers with noise of their
+  /// own.
+  Var cut_noise(const Var& z, const Indices& cut) const {
+    return shift_frames(z, cut, kept_frames(), {.first = -static_cast<int>(reach())});
+  }
+
+  /// Motion [N, B, M] for a batch of sentences; `cut` as cuts() gives it, z as noise() does (or with all 2N
+  /// frames of the last level).
   Var operator()(const Sentences& text, const std::vector<Var>& z, const Indices& cut) const {
     require(z.size() == levels_ + 1, "CnnGenerator: noise for ", z.size(), " levels, ", levels_ + 1,
             " expected");
@@ -56,11 +70,12 @@ class CnnGenerator {
     Var h = plot_[0](h_txt, z[0]);
     for (std::size_t i = 1; i <= levels_; ++i) {
       const Residual& r = residual_[i - 1];
-      const Var p = plot_[i](h_txt, z[i]);
-      h = r.conv2(relu_of_sum(p, r.conv1(h)), {.residual = repeat_frames(h, 2)});
+      if (options_.final_cut && i == levels_)
+        h = last_level(r, h, h_txt, z[i], cut);
+      else
+        h = r.conv2(relu_of_sum(plot_[i](h_txt, z[i]), r.conv1(h)), {.residual = repeat_frames(h, 2)});
     }
-    const Var motion = decode_(h);
-    return options_.final_cut ? shift_frames(motion, cut, options_.frames) : motion;
+    return decode_(h);
   }
 
   void list_parameters(ParameterList& list) {
@@ -72,6 +87,24 @@ class CnnGenerator {
   }
 
  private:
+  /// Frames on either side of the cut that the last convolution sees.
+  std::size_t reach() const { return options_.taps / 2; }
+  std::size_t kept_frames() const { return options_.frames + 2 * reach(); }
+
+  /// The level of 2N frames, computed only where the final cut keeps it: N frames and, before the last
+  /// convolution, its reach. A frame before 0 or from 2N on is zero padding: there the sum under the ReLU is
+  /// made very negative.
+  Var last_level(const Residual& r, const Var& h, const Var& h_txt, const Var& z, const Indices& cut) const {
+    constexpr double far_below = -1e30;
+    const int first = -static_cast<int>(reach());
+    const Var coarse = shift_frames(repeat_frames(r.conv1(h), 2), cut, kept_frames(),
+                                    {.first = first, .outside = far_below});
+    Offsets offsets;
+    for (std::size_t tap = 0; tap < options_.taps; ++tap) offsets.push_back(static_cast<int>(tap));
+    return taps(relu_of_sum(plot_.back()(h_txt, z), coarse), r.conv2.weight, offsets, options_.frames, false,
+                {.bias = r.conv2.bias, .residual = shift_frames(repeat_frames(h, 2), cut, options_.frames)});
+  }
+
   CnnGeneratorOptions options_;
   std::size_t levels_;
   TextEncoder text_;

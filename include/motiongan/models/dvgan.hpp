@@ -58,8 +58,8 @@ class Dvgan {
                           .first_sample = static_cast<std::uint32_t>(options.first_sample + first)};
       const Sentences text(context_, std::vector<std::vector<int>>(batch, sentence),
                            format_.vocabulary.size());
-      const Var motion =
-          generator_(text, generator_.noise(context_, key, batch), generator_.cuts(context_, key, batch));
+      const Indices cut = generator_.cuts(context_, key, batch);
+      const Var motion = generator_(text, generator_.noise(context_, key, batch, cut), cut);
       const std::vector<float> values = motion.value().to_host();
       for (std::size_t b = 0; b < batch; ++b) {
         std::vector<float> poses(frames * dof);

@@ -109,20 +109,28 @@ inline Var concat_axis(const std::vector<Var>& parts, std::size_t axis) {
                 });
 }
 
-/// Moves each sample's frames: out[t, b, :] = x[t + sign*offset[b], b, :], zero where there is no such frame.
-/// x is [T, B, C], offset [B], the result [frames_out, B, C]. Serves the input shift and the final cut (SPEC
-/// 2, 3).
-inline Var shift_frames(const Var& x, const Indices& offset, std::size_t frames_out, int sign = 1) {
+/// How shift_frames() moves frames: out[t, b, :] = x[t + first + sign*offset[b], b, :], `outside` where there
+/// is no such frame.
+struct FrameShift {
+  int first = 0, sign = 1;
+  double outside = 0;
+};
+
+/// Moves each sample's frames by its own offset. x is [T, B, C], offset [B], the result [frames_out, B, C].
+/// Serves the input shift and the final cut (SPEC 2, 3).
+inline Var shift_frames(const Var& x, const Indices& offset, std::size_t frames_out,
+                        const FrameShift& shift = {}) {
   require(x.value().rank() == 3 && offset.size() == x.dim(1), "shift_frames: ", offset.size(),
           " offsets for motion ", to_string(x.shape()));
   const std::size_t frames_in = x.dim(0), batch = x.dim(1), channels = x.dim(2);
   Tensor value(x.context(), {frames_out, batch, channels});
   x.context().launch("layout", "shift_frames",
                      Grid::items(frames_out * batch * detail::vectors(x.context(), channels)), x.value(),
-                     offset, value, frames_in, frames_out, batch, channels, static_cast<cl_int>(sign));
+                     offset, value, frames_in, frames_out, batch, channels, static_cast<cl_int>(shift.first),
+                     static_cast<cl_int>(shift.sign), Real{shift.outside});
   return record("shift_frames", {x}, std::move(value),
                 [=](const Node&, const Var& g, const Needs&) -> std::vector<Var> {
-                  return {shift_frames(g, offset, frames_in, -sign)};
+                  return {shift_frames(g, offset, frames_in, {.first = -shift.first, .sign = -shift.sign})};
                 });
 }
 

@@ -119,8 +119,8 @@ class DvganTrainer {
   Var make_fake(const Sentences& text, const RandomKey& key) const {
     const Context& context = model_.context();
     const CnnGenerator& generator = model_.generator();
-    return generator(text, generator.noise(context, key, text.batch),
-                     generator.cuts(context, key, text.batch));
+    const Indices cut = generator.cuts(context, key, text.batch);
+    return generator(text, generator.noise(context, key, text.batch, cut), cut);
   }
 
   /// One shift of a whole number of frames in [-N/2, N/2] for each sample; empty when shifting is off.
@@ -131,7 +131,7 @@ class DvganTrainer {
                            2 * half + 1);
   }
   Var shifted(const Var& motion, const Indices& shift) const {
-    return shift.empty() ? motion : shift_frames(motion, shift, motion.dim(0), -1);
+    return shift.empty() ? motion : shift_frames(motion, shift, motion.dim(0), {.sign = -1});
   }
 
   Dvgan& model_;
