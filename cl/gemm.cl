@@ -6,6 +6,11 @@
 // the row, nor the size of its tile, nor the blocking of p changes a bit of the result.
 
 #define COLUMNS (2 * VW)
+#ifdef REAL_IS_DOUBLE
+#define REAL_BYTES 8
+#else
+#define REAL_BYTES 4
+#endif
 
 // Values of p that are packed at once: 96 KB for 16 floats a vector, which stays in the second cache.
 #ifdef DEVICE_IS_CPU
@@ -26,28 +31,55 @@
 #define ROWS_8(F) ROWS_6(F) F(6) F(7)
 #define ROWS_12(F) ROWS_8(F) F(8) F(9) F(10) F(11)
 
-#define LOAD(i) realv x##i = vload(2 * i, tile), y##i = vload(2 * i + 1, tile);
-#define STORE(i) vstore(x##i, 2 * i, tile), vstore(y##i, 2 * i + 1, tile);
+typedef JOIN(REAL, 4) real4;
+
+// Vectors in private memory are of type realv, aligned; those in tensors lie anywhere. PoCL's vstore writes pieces of 16
+// bytes, so a type of lower alignment stands in for it (and for vload) on the CPU.
+#ifdef DEVICE_IS_CPU
+typedef realv anywhere __attribute__((aligned(REAL_BYTES)));
+typedef real4 anywhere4 __attribute__((aligned(REAL_BYTES)));
+#define READ(p) (*(global const anywhere*)(p))
+#define READ4(p) (*(global const anywhere4*)(p))
+#define WRITE(p, value) (*(global anywhere*)(p) = (value))
+#else
+#define READ(p) vload(0, p)
+#define READ4(p) vload4(0, p)
+#define WRITE(p, value) vstore(value, 0, p)
+#endif
+
+#define LOAD(i) realv x##i = tile[2 * i], y##i = tile[2 * i + 1];
+#define STORE(i) tile[2 * i] = x##i, tile[2 * i + 1] = y##i;
 #define FMA(i)                             \
   {                                        \
     const realv value = a[i * row_stride]; \
     x##i = fma(value, b0, x##i);           \
     y##i = fma(value, b1, y##i);           \
   }
+#define LOAD_HALF(i) realv x##i = tile[2 * i];
+#define STORE_HALF(i) tile[2 * i] = x##i;
+#define FMA_HALF(i) x##i = fma((realv)(a[i * row_stride]), b0, x##i);
 
-// tile[R][COLUMNS] += A * packed for `count` values of p.
-#define DEFINE_MULTIPLY(R)                                                                                            \
-  inline void multiply_##R(global const real* a, size_t row_stride, size_t p_stride, uint count, const real* b,      \
-                           real* tile) {                                                                              \
-    ROWS_##R(LOAD) for (uint p = 0; p < count; ++p, a += p_stride, b += COLUMNS) {                                    \
-      const realv b0 = vload(0, b), b1 = vload(1, b);                                                                 \
-      ROWS_##R(FMA)                                                                                                   \
-    }                                                                                                                 \
-    ROWS_##R(STORE)                                                                                                   \
+// tile[R][COLUMNS] += A * packed for `count` values of p; the second only for the first VW columns.
+#define DEFINE_MULTIPLY(R)                                                                                          \
+  inline void multiply_##R(global const real* a, size_t row_stride, size_t p_stride, uint count, const realv* b,   \
+                           realv* tile) {                                                                          \
+    ROWS_##R(LOAD) for (uint p = 0; p < count; ++p, a += p_stride, b += 2) {                                       \
+      const realv b0 = b[0], b1 = b[1];                                                                            \
+      ROWS_##R(FMA)                                                                                                \
+    }                                                                                                              \
+    ROWS_##R(STORE)                                                                                                \
+  }                                                                                                                \
+  inline void multiply_half_##R(global const real* a, size_t row_stride, size_t p_stride, uint count,              \
+                                const realv* b, realv* tile) {                                                     \
+    ROWS_##R(LOAD_HALF) for (uint p = 0; p < count; ++p, a += p_stride, b += 2) {                                  \
+      const realv b0 = b[0];                                                                                       \
+      ROWS_##R(FMA_HALF)                                                                                           \
+    }                                                                                                              \
+    ROWS_##R(STORE_HALF)                                                                                           \
   }
 
 // 12 rows take 24 of the 32 registers of a machine with 64-byte vectors, 6 rows 12 of the 16 of smaller ones.
-#if VW == 16 || (VW == 8 && defined(REAL_IS_DOUBLE))
+#if VW * REAL_BYTES == 64
 #define MOST_ROWS 12
 DEFINE_MULTIPLY(12)
 DEFINE_MULTIPLY(8)
@@ -59,173 +91,224 @@ DEFINE_MULTIPLY(4)
 DEFINE_MULTIPLY(2)
 DEFINE_MULTIPLY(1)
 
-// packed[count][COLUMNS] from B stored [p][j]; columns from `width` on become 0.
-inline void pack_rows(global const real* b, size_t stride, uint count, uint width, real* packed) {
-  if (width == COLUMNS) {
-    for (uint p = 0; p < count; ++p, b += stride, packed += COLUMNS) {
-      vstore(vload(0, b), 0, packed);
-      vstore(vload(1, b), 1, packed);
-    }
-  } else {
-    for (uint p = 0; p < count; ++p, b += stride, packed += COLUMNS)
-      for (uint j = 0; j < COLUMNS; ++j) packed[j] = j < width ? b[j] : 0;
-  }
-}
-
-// packed[count][COLUMNS] from B stored [j][p]: blocks of VW x VW are transposed in registers, by interleaving the first
-// half of the rows with the second log2(VW) times. Columns from `width` on repeat the last one.
-inline void pack_transposed(global const real* b, size_t stride, uint count, uint width, real* packed) {
-  const uint whole = count / VW * VW;
-  for (uint half_panel = 0; half_panel < COLUMNS; half_panel += VW) {
-    for (uint p = 0; p < whole; p += VW) {
-      realv r[VW];
-#pragma unroll
-      for (uint j = 0; j < VW; ++j) r[j] = vload(0, b + min(half_panel + j, width - 1) * stride + p);
-#pragma unroll
-      for (uint round = 1; round < VW; round *= 2) {
-        realv t[VW];
-#pragma unroll
-        for (uint j = 0; j < VW / 2; ++j) {
-          t[2 * j].even = r[j].lo;
-          t[2 * j].odd = r[j + VW / 2].lo;
-          t[2 * j + 1].even = r[j].hi;
-          t[2 * j + 1].odd = r[j + VW / 2].hi;
-        }
-#pragma unroll
-        for (uint j = 0; j < VW; ++j) r[j] = t[j];
-      }
-#pragma unroll
-      for (uint j = 0; j < VW; ++j) vstore(r[j], 0, packed + (p + j) * COLUMNS + half_panel);
-    }
-  }
-  for (uint p = whole; p < count; ++p)
-    for (uint j = 0; j < COLUMNS; ++j) packed[p * COLUMNS + j] = b[min(j, width - 1) * stride + p];
-}
-
-// The start of a tile's sums: 0, or what C holds.
-inline void load_tile(global const real* c, size_t stride, uint rows, uint width, bool zero, real* tile) {
-  for (uint i = 0; i < rows; ++i, tile += COLUMNS, c += stride) {
-    if (zero) {
-      vstore((realv)(0), 0, tile);
-      vstore((realv)(0), 1, tile);
-    } else if (width == COLUMNS) {
-      vstore(vload(0, c), 0, tile);
-      vstore(vload(1, c), 1, tile);
-    } else {
-      for (uint j = 0; j < COLUMNS; ++j) tile[j] = j < width ? c[j] : 0;
+// packed[panels][count][COLUMNS] from B stored [p][j]: a row of several panels is read in one go, for short pieces of
+// far rows come slowly.
+inline void pack_rows(global const real* b, size_t stride, uint count, uint panels, size_t panel_stride,
+                      realv* packed) {
+  for (uint p = 0; p < count; ++p, b += stride, packed += 2) {
+    global const real* from = b;
+    realv* to = packed;
+    for (uint w = 0; w < panels; ++w, from += COLUMNS, to += panel_stride) {
+      to[0] = READ(from);
+      to[1] = READ(from + VW);
     }
   }
 }
 
-inline void store_tile(global real* c, size_t stride, uint rows, uint width, const real* tile) {
-  for (uint i = 0; i < rows; ++i, tile += COLUMNS, c += stride) {
+// The same for the last panel when it is narrower. Its first `readable` rows may be read to COLUMNS; what stands past
+// `width` is never used.
+inline void pack_narrow_rows(global const real* b, size_t stride, uint count, uint width, uint readable,
+                             realv* packed) {
+  readable = min(readable, count);
+  pack_rows(b, stride, readable, 1, 0, packed);
+  for (uint p = readable; p < count; ++p)
+    for (uint j = 0; j < COLUMNS; ++j) ((real*)packed)[p * COLUMNS + j] = j < width ? b[p * stride + j] : 0;
+}
+
+// packed[count][COLUMNS] from B stored [j][p], columns from `width` on repeat the last one. Four values of p at a time: each
+// vector takes 4 values of VW / 4 rows; taking the even and the odd elements of pairs of them twice brings those of one
+// p together, in the order of the columns.
+#define AT(j) READ4(b + min((uint)(j), last) * stride)
+#if VW == 16
+#define GATHER(i) (realv)(AT(4 * i), AT(4 * i + 1), AT(4 * i + 2), AT(4 * i + 3))
+#elif VW == 8
+#define GATHER(i) (realv)(AT(2 * i), AT(2 * i + 1))
+#else
+#define GATHER(i) AT(i)
+#endif
+inline void pack_transposed(global const real* b, size_t stride, uint count, uint width, realv* packed) {
+  const uint whole = count / 4 * 4;
+  for (uint h = 0; h < 2 && h * VW < width; ++h, b += VW * stride) {
+    const uint last = width - 1 - h * VW;
+    realv* to = packed + h;
+    for (uint p = 0; p < whole; p += 4, b += 4, to += 8) {
+      const realv r0 = GATHER(0), r1 = GATHER(1), r2 = GATHER(2), r3 = GATHER(3);
+      const realv even01 = (realv)(r0.even, r1.even), even23 = (realv)(r2.even, r3.even);
+      const realv odd01 = (realv)(r0.odd, r1.odd), odd23 = (realv)(r2.odd, r3.odd);
+      to[0] = (realv)(even01.even, even23.even);
+      to[2] = (realv)(odd01.even, odd23.even);
+      to[4] = (realv)(even01.odd, even23.odd);
+      to[6] = (realv)(odd01.odd, odd23.odd);
+    }
+    for (uint p = whole; p < count; ++p, ++b, to += 2)
+      for (uint j = 0; j < VW; ++j) ((real*)to)[j] = b[min(j, last) * stride];
+    b -= count;
+  }
+}
+
+// sums[2 * DIRECT] += a row of A times DIRECT panels of B stored [p][j], read where they are: for few rows, packing costs as
+// much as the product.
+#define DIRECT 4
+inline void multiply_direct(global const real* a, size_t a_stride, global const real* b, size_t b_stride, uint count,
+                            realv* sums) {
+  realv s0 = sums[0], s1 = sums[1], s2 = sums[2], s3 = sums[3];
+  realv s4 = sums[4], s5 = sums[5], s6 = sums[6], s7 = sums[7];
+  for (uint p = 0; p < count; ++p, a += a_stride, b += b_stride) {
+    const realv value = *a;
+    s0 = fma(value, READ(b), s0), s1 = fma(value, READ(b + VW), s1);
+    s2 = fma(value, READ(b + 2 * VW), s2), s3 = fma(value, READ(b + 3 * VW), s3);
+    s4 = fma(value, READ(b + 4 * VW), s4), s5 = fma(value, READ(b + 5 * VW), s5);
+    s6 = fma(value, READ(b + 6 * VW), s6), s7 = fma(value, READ(b + 7 * VW), s7);
+  }
+  sums[0] = s0, sums[1] = s1, sums[2] = s2, sums[3] = s3;
+  sums[4] = s4, sums[5] = s5, sums[6] = s6, sums[7] = s7;
+}
+
+// A row of a tile is two vectors. When the panel is narrower but holds one, the second vector is the one that ends with
+// the panel: it overlaps the first, and nothing outside is touched.
+inline void load_tile(global const real* c, size_t stride, uint rows, uint width, realv* tile) {
+  for (uint i = 0; i < rows; ++i, tile += 2, c += stride) {
     if (width == COLUMNS) {
-      vstore(vload(0, tile), 0, c);
-      vstore(vload(1, tile), 1, c);
+      tile[0] = READ(c);
+      tile[1] = READ(c + VW);
     } else {
-      for (uint j = 0; j < width; ++j) c[j] = tile[j];
+      for (uint j = 0; j < width; ++j) ((real*)tile)[j] = c[j];
     }
   }
 }
 
 // What follows the sum; a NaN stays one through the ReLU.
-inline real finish(real value, uint flags, real bias, real residual) {
-  if (flags & BIAS) value += bias;
-  if (flags & RESIDUAL) value += residual;
+inline real finish_one(real value, uint flags, global const real* bias, global const real* residual) {
+  if (flags & BIAS) value += *bias;
+  if (flags & RESIDUAL) value += *residual;
   return (flags & RELU) && value < 0 ? 0 : value;
 }
 
-inline void finish_tile(global const real* bias, global const real* residual, size_t residual_stride, uint flags,
-                        uint rows, uint width, real* tile) {
-  for (uint i = 0; i < rows; ++i, tile += COLUMNS, residual += residual_stride) {
-    if (width == COLUMNS) {
-      for (uint h = 0; h < 2; ++h) {
-        realv value = vload(h, tile);
-        if (flags & BIAS) value += vload(h, bias);
-        if (flags & RESIDUAL) value += vload(h, residual);
-        if (flags & RELU) value = value < (realv)(0) ? (realv)(0) : value;
-        vstore(value, h, tile);
-      }
+inline void store_tile(global real* c, size_t stride, uint rows, uint width, global const real* bias,
+                       global const real* residual, size_t residual_stride, uint flags, const realv* tile) {
+  for (uint i = 0; i < rows; ++i, tile += 2, c += stride, residual += residual_stride) {
+    if (width >= VW) {
+      const uint second = width - VW;
+      realv x = tile[0], y = tile[1];
+      if (second != VW) y = vload(0, (const real*)tile + second);
+      if (flags & BIAS) x += READ(bias), y += READ(bias + second);
+      if (flags & RESIDUAL) x += READ(residual), y += READ(residual + second);
+      if (flags & RELU) x = x < (realv)(0) ? (realv)(0) : x, y = y < (realv)(0) ? (realv)(0) : y;
+      WRITE(c, x);
+      WRITE(c + second, y);
     } else {
       for (uint j = 0; j < width; ++j)
-        tile[j] = finish(tile[j], flags, flags & BIAS ? bias[j] : 0, flags & RESIDUAL ? residual[j] : 0);
+        c[j] = finish_one(((const real*)tile)[j], flags, bias + j, residual + j);
     }
   }
 }
 
-// Element (i, p) of A is a[i * strides.x + p * strides.y]; element (p, j) of B is b[j * strides.z + p * strides.w], where
-// one of the two is 1. Groups: x over panels, y over rows, z over the batch.
-__attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm(
-    global const real* restrict a, uint a_first, global const real* restrict b, uint b_first, global real* restrict c,
-    uint c_first, global const real* restrict bias, uint bias_first, global const real* restrict residual,
-    uint residual_first, uint m, uint n, uint k, uint4 strides, uint c_stride, uint residual_stride,
-    uint segments, uint4 a_offsets, uint4 b_offsets, uint4 batch_strides, uint flags, uint rows_per_group,
-    uint panels_per_group, uint block) {
-  real packed[BLOCK * COLUMNS] __attribute__((aligned(64)));
-  real tile[MOST_ROWS * COLUMNS] __attribute__((aligned(64)));
-  const uint a_offset[4] = {a_offsets.x, a_offsets.y, a_offsets.z, a_offsets.w};
-  const uint b_offset[4] = {b_offsets.x, b_offsets.y, b_offsets.z, b_offsets.w};
+// What a product needs to know, in one argument: PoCL takes its time over each. The same as GemmNumbers on the host.
+typedef struct {
+  uint m, n, k, segments, flags;
+  uint a_first, b_first, c_first, bias_first, residual_first;
+  uint a_row, a_p, b_p, b_column, c_row, residual_row;  // distances: element (i, p) of A is a[i * a_row + p * a_p]
+  uint a_batch, b_batch, c_batch;
+  uint a_segment[4], b_segment[4];
+  uint rows_per_group, panels_per_group, panels_at_once;
+} Numbers;
+
+// One of a_row and a_p is 1, and one of b_p and b_column. Groups: x over panels, y over rows, z over the batch.
+__attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm(global const real* restrict a,
+                                                                global const real* restrict b, global real* restrict c,
+                                                                global const real* restrict bias,
+                                                                global const real* restrict residual,
+                                                                const Numbers g) {
+  realv packed[BLOCK * 2], tile[MOST_ROWS * 2];
   const size_t batch = get_group_id(2);
-  a += a_first + batch * batch_strides.x;
-  b += b_first + batch * batch_strides.y;
-  c += c_first + batch * batch_strides.z;
-  bias += bias_first;
-  residual += residual_first;
-  const uint row_begin = get_group_id(1) * rows_per_group, row_end = min(m, row_begin + rows_per_group);
-  const uint column_begin = get_group_id(0) * panels_per_group * COLUMNS;
-  const uint column_end = min(n, column_begin + panels_per_group * COLUMNS);
-  const size_t a_row = strides.x, a_p = strides.y, b_column = strides.z, b_p = strides.w, c_row = c_stride;
-  block = min(block, (uint)BLOCK);
+  a += g.a_first + batch * g.a_batch;
+  b += g.b_first + batch * g.b_batch;
+  c += g.c_first + batch * g.c_batch;
+  bias += g.bias_first;
+  residual += g.residual_first;
+  const uint k = g.k, segments = g.segments, flags = g.flags;
+  const uint row_begin = get_group_id(1) * g.rows_per_group, row_end = min(g.m, row_begin + g.rows_per_group);
+  const uint column_begin = get_group_id(0) * g.panels_per_group * COLUMNS;
+  const uint column_end = min(g.n, column_begin + g.panels_per_group * COLUMNS);
+  const size_t a_row = g.a_row, a_p = g.a_p, b_p = g.b_p, b_column = g.b_column, c_row = g.c_row;
+  const size_t residual_row = g.residual_row;
+  const uint panels_at_once = min(g.panels_at_once, (uint)BLOCK);
+  const uint block = BLOCK / panels_at_once;
   const bool together = segments * k <= block;
 
-  for (uint j = column_begin; j < column_end; j += COLUMNS) {
-    const uint width = min((uint)COLUMNS, column_end - j);
+  for (uint first_column = column_begin; first_column < column_end; first_column += panels_at_once * COLUMNS) {
+    const uint columns = min(panels_at_once * (uint)COLUMNS, column_end - first_column);
+    if (b_column == 1 && row_end - row_begin <= 2 && columns == DIRECT * COLUMNS) {
+      for (uint i = row_begin; i < row_end; ++i) {
+        realv sums[2 * DIRECT];
+        global real* at = c + i * c_row + first_column;
+        for (uint w = 0; w < 2 * DIRECT; ++w) sums[w] = flags & ACCUMULATE ? READ(at + w * VW) : (realv)(0);
+        for (uint s = 0; s < segments; ++s)
+          multiply_direct(a + g.a_segment[s] + i * a_row, a_p, b + g.b_segment[s] + first_column, b_p, k, sums);
+        for (uint w = 0; w < 2 * DIRECT; w += 2)
+          store_tile(at + w * VW, 0, 1, COLUMNS, bias + first_column + w * VW,
+                     residual + i * residual_row + first_column + w * VW, 0, flags, sums + w);
+      }
+      continue;
+    }
     uint segment = 0, p = 0;  // where the next block starts
     do {
       const uint count = together ? k : min(block, k - p);
       const uint segment_end = together ? segments : segment + 1;
       const bool first = segment == 0 && p == 0, last = segment_end == segments && p + count == k;
+      const uint segment_size = count * 2, panel_size = (segment_end - segment) * segment_size;
       for (uint s = segment; s < segment_end; ++s) {
-        global const real* from = b + b_offset[s] + p * b_p + j * b_column;
-        real* to = packed + (s - segment) * count * COLUMNS;
-        if (b_column == 1)
-          pack_rows(from, b_p, count, width, to);
-        else
-          pack_transposed(from, b_column, count, width, to);
-      }
-      for (uint i = row_begin, rows; i < row_end; i += rows) {
-        const uint left = row_end - i;
-        rows = left >= MOST_ROWS ? MOST_ROWS : left >= 8 ? 8 : left >= 4 ? 4 : left >= 2 ? 2 : 1;
-        load_tile(c + i * c_row + j, c_row, rows, width, first && !(flags & ACCUMULATE), tile);
-        for (uint s = segment; s < segment_end; ++s) {
-          global const real* rows_of_a = a + a_offset[s] + i * a_row + p * a_p;
-          const real* panel = packed + (s - segment) * count * COLUMNS;
-          switch (rows) {
-#if MOST_ROWS == 12
-            case 12:
-              multiply_12(rows_of_a, a_row, a_p, count, panel, tile);
-              break;
-            case 8:
-              multiply_8(rows_of_a, a_row, a_p, count, panel, tile);
-              break;
-#else
-            case 6:
-              multiply_6(rows_of_a, a_row, a_p, count, panel, tile);
-              break;
-#endif
-            case 4:
-              multiply_4(rows_of_a, a_row, a_p, count, panel, tile);
-              break;
-            case 2:
-              multiply_2(rows_of_a, a_row, a_p, count, panel, tile);
-              break;
-            default:
-              multiply_1(rows_of_a, a_row, a_p, count, panel, tile);
+        global const real* from = b + g.b_segment[s] + p * b_p + first_column * b_column;
+        realv* to = packed + (s - segment) * segment_size;
+        if (b_column == 1) {
+          const uint whole = columns / COLUMNS, width = columns % COLUMNS;
+          pack_rows(from, b_p, count, whole, panel_size, to);
+          if (width > 0) {
+            // Reading on to COLUMNS from a row ends inside B while the rows after it hold that many elements.
+            const size_t past = b_p == 0 ? k : (COLUMNS - width + b_p - 1) / b_p;
+            pack_narrow_rows(from + whole * COLUMNS, b_p, count, width, k - p > past ? k - p - past : 0,
+                             to + whole * panel_size);
           }
+        } else {
+          for (uint j = 0; j < columns; j += COLUMNS, to += panel_size)
+            pack_transposed(from + j * b_column, b_column, count, min((uint)COLUMNS, columns - j), to);
         }
-        if (last && (flags & (BIAS | RESIDUAL | RELU)))
-          finish_tile(bias + j, residual + (size_t)i * residual_stride + j, residual_stride, flags, rows, width, tile);
-        store_tile(c + i * c_row + j, c_row, rows, width, tile);
+      }
+      for (uint j = first_column; j < first_column + columns; j += COLUMNS) {
+        const uint width = min((uint)COLUMNS, first_column + columns - j);
+        const realv* panel = packed + (j - first_column) / COLUMNS * panel_size;
+        for (uint i = row_begin, rows; i < row_end; i += rows) {
+          const uint left = row_end - i;
+          rows = left >= MOST_ROWS ? MOST_ROWS : left >= 8 ? 8 : left >= 4 ? 4 : left >= 2 ? 2 : 1;
+          global real* at = c + i * c_row + j;
+          if (first && !(flags & ACCUMULATE)) {
+            for (uint e = 0; e < 2 * rows; ++e) tile[e] = 0;
+          } else {
+            load_tile(at, c_row, rows, width, tile);
+          }
+          for (uint s = segment; s < segment_end; ++s) {
+            global const real* rows_of_a = a + g.a_segment[s] + i * a_row + p * a_p;
+            const realv* piece = panel + (s - segment) * segment_size;
+#define MULTIPLY(R)                                                 \
+  if (rows == R) {                                                  \
+    if (width > VW)                                                 \
+      multiply_##R(rows_of_a, a_row, a_p, count, piece, tile);      \
+    else                                                            \
+      multiply_half_##R(rows_of_a, a_row, a_p, count, piece, tile); \
+  }
+#if MOST_ROWS == 12
+            MULTIPLY(12)
+            MULTIPLY(8)
+#else
+            MULTIPLY(6)
+#endif
+            MULTIPLY(4)
+            MULTIPLY(2)
+            MULTIPLY(1)
+          }
+          store_tile(at, c_row, rows, width, bias + j, residual + i * residual_row + j, residual_row,
+                     last ? flags : 0, tile);
+        }
       }
       p += count;
       if (p >= k) {
@@ -244,6 +327,5 @@ kernel void gemm_finish(global real* c, uint c_first, global const real* bias, u
   if (index >= (size_t)m * n) return;
   const size_t i = index / n, j = index % n;
   global real* at = c + c_first + batch * batch_stride + i * c_stride + j;
-  *at = finish(*at, flags, flags & BIAS ? bias[bias_first + j] : 0,
-               flags & RESIDUAL ? residual[residual_first + i * residual_stride + j] : 0);
+  *at = finish_one(*at, flags, bias + bias_first + j, residual + residual_first + i * residual_stride + j);
 }

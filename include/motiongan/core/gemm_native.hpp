@@ -9,52 +9,66 @@ namespace motiongan::detail {
 /// How the native kernel's work is cut: rows and panels (of two vectors' columns) of one work-group, and the
 /// values of p it packs at a time. None of these changes a bit of the result.
 struct GemmSplit {
-  std::size_t rows, panels, block;
+  std::size_t rows, panels, panels_at_once;
 };
 
 inline GemmSplit split_gemm(const Context& context, const GemmCall& g) {
   const std::size_t columns = 2 * context.vector_width();
   const std::size_t tile = context.vector_width() * context.real_size() == 64 ? 12 : 6;
   const std::size_t panels = (g.n + columns - 1) / columns;
-  // Several groups per core end together even when one core comes late.
+  // Several groups per core end together even when one core comes late; few rows per group would not pay for
+  // packing.
   const std::size_t wanted = 8 * context.device().compute_units;
-  const std::size_t per_row_of_groups =
-      std::max<std::size_t>(1, wanted / std::max<std::size_t>(1, panels * g.batch));
-  std::size_t rows = (g.m + per_row_of_groups - 1) / per_row_of_groups;
-  rows = std::max(rows, std::min<std::size_t>(g.m, 8 * tile));  // enough rows to pay for the packing
+  const std::size_t columns_of_groups = std::max<std::size_t>(1, panels * g.batch);
+  const std::size_t rows_of_groups = (wanted + columns_of_groups - 1) / columns_of_groups;
+  std::size_t rows =
+      std::max((g.m + rows_of_groups - 1) / rows_of_groups, std::min<std::size_t>(g.m, 8 * tile));
   rows = (rows + tile - 1) / tile * tile;
-  return {rows, 1, 768};
+  // For few rows most of the time goes into reading B: by wide rows, where the columns suffice for every
+  // core.
+  const bool wide = !g.b_transposed && g.m <= 32 && panels * g.batch >= 4 * wanted / 2;
+  const std::size_t at_once = wide ? 4 : 1;
+  return {rows, at_once, at_once};
 }
 
-/// Four kernel arguments in one (a uint4); those that do not fit 32 bits are never used, see check_gemm.
-struct Four {
-  cl_uint4 values;
-  Four(std::size_t x, std::size_t y, std::size_t z, std::size_t w)
-      : values{{static_cast<cl_uint>(x), static_cast<cl_uint>(y), static_cast<cl_uint>(z),
-                static_cast<cl_uint>(w)}} {}
+/// The kernel's Numbers (cl/gemm.cl), field by field.
+struct GemmNumbers {
+  cl_uint m, n, k, segments, flags;
+  cl_uint a_first, b_first, c_first, bias_first, residual_first;
+  cl_uint a_row, a_p, b_p, b_column, c_row, residual_row;
+  cl_uint a_batch, b_batch, c_batch;
+  cl_uint a_segment[4], b_segment[4];
+  cl_uint rows_per_group, panels_per_group, panels_at_once;
   std::string describe() const {
-    return concat("(", values.s[0], ", ", values.s[1], ", ", values.s[2], ", ", values.s[3], ")");
+    return concat("{m ", m, ", n ", n, ", k ", k, ", segments ", segments, ", flags ", flags, "}");
   }
 };
-inline void add_argument(KernelArguments& to, const Four& four) { to.set(four.values); }
+inline void add_argument(KernelArguments& to, const GemmNumbers& numbers) { to.set(numbers); }
 
 inline void gemm_native(const Context& context, const GemmCall& g) {
-  const std::size_t columns = 2 * context.vector_width();
+  // What does not fit 32 bits belongs to a dimension of size 1 and is never used, see check_gemm.
+  const auto narrow = [](std::size_t value) { return static_cast<cl_uint>(value); };
+  const auto first = [&](const Tensor& t) { return t.empty() ? 0 : narrow(t.offset()); };
+  const auto buffer = [&](const Tensor& t) { return t.empty() ? g.c.buffer() : t.buffer(); };
   const GemmSplit split = split_gemm(context, g);
-  const Four strides(g.a_transposed ? 1 : g.a_ld, g.a_transposed ? g.a_ld : 1, g.b_transposed ? g.b_ld : 1,
-                     g.b_transposed ? 1 : g.b_ld);
-  const Four a_offsets(g.a_offset[0], g.a_offset[1], g.a_offset[2], g.a_offset[3]);
-  const Four b_offsets(g.b_offset[0], g.b_offset[1], g.b_offset[2], g.b_offset[3]);
-  const Four batch_strides(g.a_batch_stride, g.b_batch_stride, g.c_batch_stride, 0);
-  const auto present = [&](const Tensor& t) -> const Tensor& { return t.empty() ? g.c : t; };
-  const std::size_t rows_of_groups = (g.m + split.rows - 1) / split.rows;
-  const std::size_t panels = (g.n + columns - 1) / columns;
+  GemmNumbers to{};
+  to.m = narrow(g.m), to.n = narrow(g.n), to.k = narrow(g.k);
+  to.segments = narrow(g.segments), to.flags = gemm_flags(g);
+  to.a_first = first(g.a), to.b_first = first(g.b), to.c_first = first(g.c) + narrow(g.c_offset);
+  to.bias_first = first(g.bias), to.residual_first = first(g.residual) + narrow(g.residual_offset);
+  to.a_row = g.a_transposed ? 1 : narrow(g.a_ld), to.a_p = g.a_transposed ? narrow(g.a_ld) : 1;
+  to.b_p = g.b_transposed ? 1 : narrow(g.b_ld), to.b_column = g.b_transposed ? narrow(g.b_ld) : 1;
+  to.c_row = narrow(g.c_ld), to.residual_row = narrow(g.residual_ld);
+  to.a_batch = narrow(g.a_batch_stride), to.b_batch = narrow(g.b_batch_stride),
+  to.c_batch = narrow(g.c_batch_stride);
+  for (std::size_t s = 0; s < 4; ++s)
+    to.a_segment[s] = narrow(g.a_offset[s]), to.b_segment[s] = narrow(g.b_offset[s]);
+  to.rows_per_group = narrow(split.rows), to.panels_per_group = narrow(split.panels);
+  to.panels_at_once = narrow(split.panels_at_once);
+  const std::size_t columns = 2 * context.vector_width() * split.panels;
   context.launch("gemm", "gemm",
-                 Grid::groups((panels + split.panels - 1) / split.panels, rows_of_groups, g.batch),
-                 present(g.a), present(g.b), g.c.buffer(), g.c.offset() + g.c_offset, present(g.bias),
-                 present(g.residual).buffer(), present(g.residual).offset() + g.residual_offset, g.m, g.n,
-                 g.k, strides, g.c_ld, g.residual_ld, g.segments, a_offsets, b_offsets, batch_strides,
-                 gemm_flags(g), split.rows, split.panels, split.block);
+                 Grid::groups((g.n + columns - 1) / columns, (g.m + split.rows - 1) / split.rows, g.batch),
+                 buffer(g.a), buffer(g.b), g.c.buffer(), buffer(g.bias), buffer(g.residual), to);
 }
 
 }  // namespace motiongan::detail
