@@ -1,0 +1,137 @@
+// Convolutions along time against plain loops.
+#include <doctest/doctest.h>
+
+#include <motiongan/models/residual.hpp>
+#include <motiongan/nn/linear.hpp>
+#include <motiongan/ops/reduce.hpp>
+
+#include "../support/check_grads.hpp"
+
+using namespace motiongan;
+using testing::double_context;
+
+namespace {
+
+/// PyTorch's Conv1d with stride 1 and zero "same" padding; x [T, B, in], weight [taps, out, in].
+std::vector<double> plain_conv(const Tensor& x, const Tensor& weight, const Tensor& bias) {
+  const std::size_t frames = x.dim(0), batch = x.dim(1), in = x.dim(2), taps_count = weight.dim(0),
+                    out = weight.dim(1);
+  const std::vector<double> xs = x.to_host<double>(), ws = weight.to_host<double>(),
+                            bs = bias.to_host<double>();
+  std::vector<double> y(frames * batch * out);
+  for (std::size_t t = 0; t < frames; ++t)
+    for (std::size_t b = 0; b < batch; ++b)
+      for (std::size_t o = 0; o < out; ++o) {
+        double sum = bs[o];
+        for (std::size_t s = 0; s < taps_count; ++s) {
+          const long from = static_cast<long>(t + s) - static_cast<long>(taps_count / 2);
+          if (from < 0 || from >= static_cast<long>(frames)) continue;
+          for (std::size_t i = 0; i < in; ++i)
+            sum += ws[(s * out + o) * in + i] * xs[(static_cast<std::size_t>(from) * batch + b) * in + i];
+        }
+        y[(t * batch + b) * out + o] = sum;
+      }
+  return y;
+}
+
+void check_near(const std::vector<double>& found, const std::vector<double>& expected) {
+  REQUIRE(found.size() == expected.size());
+  double worst = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) worst = std::max(worst, std::abs(found[i] - expected[i]));
+  CHECK(worst < 1e-12);
+}
+
+Var random(std::size_t frames, std::size_t batch, std::size_t channels) {
+  return Var::constant(random_normal(double_context(), {.seed = 11}, frames, batch, channels));
+}
+
+}  // namespace
+
+TEST_CASE("Conv1d is PyTorch's, for 1, 3, 5 and 7 taps and as few frames as one") {
+  Initializer init(double_context(), 1);
+  for (std::size_t taps_count : {1, 3, 5, 7})
+    for (std::size_t frames : {1, 2, 3, 4, 8, 13}) {
+      CAPTURE(taps_count);
+      CAPTURE(frames);
+      const Conv1d conv(init, 6, 5, taps_count);
+      const Var x = random(frames, 3, 6);
+      check_near(conv(x).value().to_host<double>(),
+                 plain_conv(x.value(), conv.weight.value(), conv.bias.value()));
+    }
+}
+
+TEST_CASE("residual and ReLU are added after the convolution") {
+  Initializer init(double_context(), 2);
+  const Conv1d conv(init, 4, 4, 3);
+  const Var x = random(6, 2, 4);
+  std::vector<double> expected = plain_conv(x.value(), conv.weight.value(), conv.bias.value());
+  const std::vector<double> xs = x.value().to_host<double>();
+  for (std::size_t i = 0; i < expected.size(); ++i) expected[i] = std::max(0.0, expected[i] + xs[i]);
+  check_near(conv(x, {.residual = x, .relu = true}).value().to_host<double>(), expected);
+}
+
+TEST_CASE("Conv1d::down is Down of the convolution, and so are its gradients") {
+  Initializer init(double_context(), 3);
+  const Conv1d conv(init, 5, 7, 3);
+  for (std::size_t frames : {2, 3, 4, 5, 8, 32}) {
+    CAPTURE(frames);
+    const Var x = Var::leaf(random(frames, 2, 5).value());
+    const std::size_t half = frames / 2;
+    const Var plain = sum_frames(slice(conv(x), 0, 0, 2 * half), 2, 0.5),
+              quick = conv.down(pair_means(x), frames, false);
+    check_near(quick.value().to_host<double>(), plain.value().to_host<double>());
+    check_near(conv.down(pair_means(x), frames, true).value().to_host<double>(),
+               relu(plain).value().to_host<double>());
+    const std::vector<Var> wanted{x, conv.weight, conv.bias};
+    const std::vector<Var> a = grad(square(plain), wanted), b = grad(square(quick), wanted);
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      check_near(b[i].value().to_host<double>(), a[i].value().to_host<double>());
+  }
+  CHECK_THROWS_WITH_AS(Conv1d(init, 2, 2, 5).down(random(4, 1, 2), 4, false),
+                       "Conv1d::down: 3 taps expected, 5 found", Error);
+}
+
+TEST_CASE("Linear multiplies the last axis, whatever stands before it") {
+  Initializer init(double_context(), 5);
+  const Linear linear(init, 4, 3);
+  const Var x = random(2, 3, 4);
+  const std::vector<double> xs = x.value().to_host<double>(), ws = linear.weight.value().to_host<double>(),
+                            bs = linear.bias.value().to_host<double>();
+  std::vector<double> expected;
+  for (std::size_t row = 0; row < 6; ++row)
+    for (std::size_t o = 0; o < 3; ++o) {
+      double sum = bs[o];
+      for (std::size_t i = 0; i < 4; ++i) sum += ws[o * 4 + i] * xs[row * 4 + i];
+      expected.push_back(sum);
+    }
+  check_near(linear(x).value().to_host<double>(), expected);
+  check_near(linear(reshape(x, {6, 4})).value().to_host<double>(), expected);
+  for (double& v : expected) v = std::max(v, 0.0);
+  check_near(linear(x, true).value().to_host<double>(), expected);
+  CHECK(linear(x).shape() == Shape{2, 3, 3});
+}
+
+TEST_CASE("wrong sizes are refused with both shapes") {
+  Initializer init(double_context(), 6);
+  CHECK_THROWS_WITH_AS(Conv1d(init, 4, 4, 2), "Conv1d: 2 taps; same padding needs an odd number", Error);
+  const Conv1d conv(init, 4, 4, 3);
+  CHECK_THROWS_WITH_AS(conv(random(2, 2, 5)), "taps: input [2, 2, 5] does not fit weights [3, 4, 4]", Error);
+}
+
+TEST_CASE("numbers of frames that halve") {
+  CHECK(levels_of(1) == 0);
+  CHECK(levels_of(32) == 5);
+  CHECK(levels_of(1024) == 10);
+  for (const auto& [frames, text] : {std::pair{33, "33 was asked; the nearest are 32 and 64"},
+                                     {31, "31 was asked; the nearest are 16 and 32"},
+                                     {3, "3 was asked; the nearest are 2 and 4"},
+                                     {0, "0 was asked; the nearest are 1 and 2"}}) {
+    std::string found;
+    try {
+      levels_of(static_cast<std::size_t>(frames));
+    } catch (const Error& error) {
+      found = error.what();
+    }
+    CHECK(found.find(text) != std::string::npos);
+  }
+}
