@@ -120,9 +120,10 @@ inline void cnn_generator(const File& file, const Context& context, Pairs& outpu
   std::vector<Var> z;
   for (std::size_t i = 0; i <= model.levels(); ++i)
     z.push_back(Var::constant(file.tensor(context, "in.z." + std::to_string(i))));
-  const auto cut = file.integers("in.cut");
-  const Var motion =
-      model(file.sentences(context), z, Indices(context, std::vector<cl_int>(cut.begin(), cut.end())));
+  const auto cut_values = file.integers("in.cut");
+  const Indices cut(context, std::vector<cl_int>(cut_values.begin(), cut_values.end()));
+  z.back() = model.cut_noise(z.back(), cut);
+  const Var motion = model(file.sentences(context), z, cut);
   outputs.push_back(output(file, "out.motion", motion));
   add_gradients(gradients, file, parameters, grad(mean(square(motion)), values_of(parameters)));
 }
