@@ -1,0 +1,113 @@
+// What the verbs of the command share: how they are registered, and how they talk.
+#pragma once
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "motiongan/core/device.hpp"
+#include "motiongan/core/error.hpp"
+
+namespace motiongan::command {
+
+namespace fs = std::filesystem;
+
+/// What main() runs once the command line has been read; the exit status.
+using Job = std::function<int()>;
+
+void add_devices(CLI::App& app, Job& job);
+void add_train(CLI::App& app, Job& job);
+void add_generate(CLI::App& app, Job& job);
+void add_info(CLI::App& app, Job& job);
+void add_view(CLI::App& app, Job& job);
+void add_synth(CLI::App& app, Job& job);
+void add_compare(CLI::App& app, Job& job);
+void add_demo(CLI::App& app, Job& job);
+
+/// "1 clip", "35 clips".
+inline std::string counted(std::size_t n, std::string_view what) {
+  return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+}
+
+/// At most `digits` significant digits and no more than needed: "4", "12.5", "0.00833".
+inline std::string brief(double value, int digits = 4) { return fmt::format("{:.{}g}", value, digits); }
+
+/// "8 s", "2 min 5 s", "1 h 20 min".
+inline std::string duration(double seconds) {
+  if (seconds < 120) return brief(seconds, seconds < 10 ? 3 : 4) + " s";
+  const auto whole = static_cast<std::size_t>(seconds + 0.5);
+  if (whole < 7200) return fmt::format("{} min {} s", whole / 60, whole % 60);
+  return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
+}
+
+/// How wide a text is on a terminal, taking every code point for one column.
+inline std::size_t columns_of(std::string_view utf8) {
+  std::size_t n = 0;
+  for (const char c : utf8) n += (c & 0xC0) != 0x80;
+  return n;
+}
+
+/// Prints rows of texts as a table with a line of headings; `align` has an 'l' or 'r' for each column.
+inline void print_table(const std::vector<std::string>& head,
+                        const std::vector<std::vector<std::string>>& rows, std::string_view align,
+                        std::string_view indent = "") {
+  std::vector<std::size_t> widths;
+  for (std::size_t c = 0; c < head.size(); ++c) {
+    widths.push_back(columns_of(head[c]));
+    for (const auto& row : rows) widths[c] = std::max(widths[c], columns_of(row[c]));
+  }
+  const auto line = [&](const std::vector<std::string>& row) {
+    std::string out(indent);
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const std::string pad(widths[c] - columns_of(row[c]), ' ');
+      out += (c > 0 ? "  " : "") + (align[c] == 'r' ? pad + row[c] : row[c] + pad);
+    }
+    out.erase(out.find_last_not_of(' ') + 1);
+    fmt::print("{}\n", out);
+  };
+  line(head);
+  for (const auto& row : rows) line(row);
+}
+
+/// One line of a list of facts: the name in a column of its own.
+inline void print_fact(std::string_view name, std::string_view text) {
+  fmt::print("  {:<11} {}\n", name, text);
+}
+
+/// "gpu", "cpu" or "other".
+inline const char* kind_of(const Device& device) {
+  return device.is_gpu() ? "gpu" : device.is_cpu() ? "cpu" : "other";
+}
+
+inline std::string describe(const Device& device) {
+  return fmt::format("{}: {} ({})", kind_of(device), device.name, device.platform_name);
+}
+
+/// Makes the folder and those above it where they are not there yet.
+inline void make_folder(const fs::path& folder) {
+  std::error_code problem;
+  fs::create_directories(folder, problem);
+  if (problem || !fs::is_directory(folder))
+    throw Error("cannot make the folder ", folder.string(), ": ",
+                problem ? problem.message() : "a file of that name is in the way");
+}
+
+/// The folder that a file to be written lies in, made where it is missing.
+inline void make_folder_of(const fs::path& file) {
+  if (file.has_parent_path()) make_folder(file.parent_path());
+}
+
+/// The file of captions that goes with a folder of clips: the one given, or captions.tsv in the folder where
+/// there is one, or none.
+inline fs::path captions_for(const fs::path& folder, const fs::path& given) {
+  if (!given.empty()) return given;
+  const fs::path beside = folder / "captions.tsv";
+  return fs::is_regular_file(beside) ? beside : fs::path();
+}
+
+}  // namespace motiongan::command

@@ -1,0 +1,45 @@
+// motiongan devices: which OpenCL devices there are.
+#include <cstdlib>
+#include <optional>
+
+#include "command.hpp"
+
+namespace motiongan::command {
+namespace {
+
+std::string gibibytes(cl_ulong bytes) {
+  return fmt::format("{:.1f} GiB", static_cast<double>(bytes) / (1 << 30));
+}
+
+int list_devices() {
+  const std::vector<Device> devices = all_devices();
+  const char* wish = std::getenv("MOTIONGAN_DEVICE");
+  // Without devices, or where none fits the wish, this throws and says what to do.
+  std::optional<Device> chosen;
+  if (devices.empty()) choose_device(devices, "");
+  try {
+    chosen = choose_device(devices, wish ? wish : "");
+  } catch (const Error&) {
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (const Device& d : devices)
+    rows.push_back({chosen && chosen->id == d.id ? "*" : "", kind_of(d), d.name, d.platform_name, d.version,
+                    std::to_string(d.compute_units), gibibytes(d.global_memory),
+                    d.has_double ? "yes" : "no"});
+  print_table({"", "kind", "name", "platform", "version", "units", "memory", "double"}, rows, "lllllrrl");
+  if (!chosen)
+    throw Error("none of these is \"", wish ? wish : "",
+                "\"; --device and MOTIONGAN_DEVICE take cpu, gpu, a part of a name, or NAME:index");
+  fmt::print("* is the one that is taken{}; --device WISH or MOTIONGAN_DEVICE=WISH picks another.\n",
+             wish && *wish ? fmt::format(" for \"{}\"", wish) : "");
+  return 0;
+}
+
+}  // namespace
+
+void add_devices(CLI::App& app, Job& job) {
+  CLI::App* verb = app.add_subcommand("devices", "List the OpenCL devices and mark the one that is taken");
+  verb->callback([&job] { job = list_devices; });
+}
+
+}  // namespace motiongan::command

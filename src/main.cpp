@@ -1,0 +1,60 @@
+// The motiongan command: one verb after another, each in a file of its own.
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <new>
+
+#include "command.hpp"
+
+namespace motiongan::command {
+namespace {
+
+int run(int argc, char** argv) {
+  CLI::App app(
+      "motiongan trains GANs on motion clips (BVH) and their captions, and makes new motion for a text.\n"
+      "`motiongan VERB --help` lists the options of a verb; `motiongan demo` shows all of it in minutes.");
+  app.name("motiongan");
+  app.set_version_flag("--version", "motiongan " MOTIONGAN_VERSION);
+  app.require_subcommand(1);
+  app.fallthrough();
+  app.get_formatter()->column_width(34);
+  app.add_option_function<std::string>(
+         "--device",
+         [](const std::string& wish) {
+           require(setenv("MOTIONGAN_DEVICE", wish.c_str(), 1) == 0, "cannot set MOTIONGAN_DEVICE");
+         },
+         "OpenCL device: cpu, gpu, a part of its name, or NAME:index (as MOTIONGAN_DEVICE; see `motiongan "
+         "devices`)")
+      ->type_name("WISH");
+  Job job;
+  add_devices(app, job);
+  add_train(app, job);
+  add_generate(app, job);
+  add_info(app, job);
+  add_view(app, job);
+  add_compare(app, job);
+  add_synth(app, job);
+  add_demo(app, job);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error);
+  }
+  return job();
+}
+
+}  // namespace
+}  // namespace motiongan::command
+
+int main(int argc, char** argv) {
+  // Lines appear when they are written, also between the lines of the progress bar in a file.
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
+  try {
+    return motiongan::command::run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    std::fputs("motiongan: out of memory\n", stderr);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "motiongan: %s\n", error.what());
+  }
+  return 1;
+}

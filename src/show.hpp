@@ -1,0 +1,33 @@
+// Motions as a page and as a picture: what generate, view and demo share.
+#pragma once
+#include <algorithm>
+#include <span>
+
+#include "command.hpp"
+#include "motiongan/view/player.hpp"
+#include "motiongan/view/pose_strip.hpp"
+#include "write_png.hpp"
+
+namespace motiongan::command {
+
+/// Writes the page and says how to look at it.
+inline void show_page(const fs::path& path, std::span<const view::ViewedMotion> motions,
+                      const std::string& title) {
+  make_folder_of(path);
+  view::write_player(path, motions, {.title = title});
+  fmt::print("wrote {}: {} side by side; open it in a browser\n", path.string(),
+             counted(motions.size(), "motion"));
+}
+
+/// Writes a strip of poses; of many motions only the first ones, for a picture has an end.
+inline void show_strip(const fs::path& path, std::span<const view::ViewedMotion> motions) {
+  constexpr std::size_t most = 24;
+  make_folder_of(path);
+  const auto shown = motions.first(std::min(most, motions.size()));
+  write_png(path, view::pose_strip(shown));
+  fmt::print("wrote {}: poses of {}\n", path.string(),
+             shown.size() < motions.size() ? fmt::format("the first {} of {} motions", most, motions.size())
+                                           : counted(shown.size(), "motion"));
+}
+
+}  // namespace motiongan::command

@@ -1,0 +1,318 @@
+// motiongan train dvgan: from clips and captions to a model.
+#include <csignal>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "command.hpp"
+#include "motiongan/motion/procedural.hpp"
+#include "motiongan/train/progress.hpp"
+#include "motiongan/train/train.hpp"
+
+namespace motiongan::command {
+namespace {
+
+struct TrainArgs {
+  // What a run is. Kept in its checkpoint, so that --resume needs none of it.
+  std::string folder, captions;
+  std::size_t procedural = 0;  // clips of built-in motion; 0: the folder's
+  motion::DatasetOptions data;
+  std::string first_frame = "auto", validation = "dense", level_weights = "exp";
+  DvganOptions model;
+  DvganTrainOptions training;
+  // What only this start of it is.
+  std::string save;
+  bool resume = false;
+  RunOptions run;
+};
+
+/// Calls f(name, member) for all that is kept, by the name of its option.
+template <class F>
+void each_kept(TrainArgs& a, F&& f) {
+  f("FOLDER", a.folder);
+  f("--captions", a.captions);
+  f("--procedural", a.procedural);
+  f("--frames", a.data.frames);
+  f("--rate", a.data.rate);
+  f("--root-position", a.data.root_position);
+  f("--first-frame", a.first_frame);
+  f("--train-share", a.data.train_share);
+  f("--split-seed", a.data.split_seed);
+  f("--hidden", a.model.hidden);
+  f("--taps", a.model.taps);
+  f("--final-cut", a.model.final_cut);
+  f("--seed", a.training.seed);
+  f("--iterations", a.training.iterations);
+  f("--critic-steps", a.training.critic_steps);
+  f("--batch", a.training.batch);
+  f("--lambda", a.training.lambda_gp);
+  f("--learning-rate", a.training.adam.learning_rate);
+  f("--beta1", a.training.adam.beta1);
+  f("--beta2", a.training.adam.beta2);
+  f("--epsilon", a.training.adam.epsilon);
+  f("--validation", a.validation);
+  f("--level-weights", a.level_weights);
+  f("--shift", a.training.input_shift);
+}
+
+std::string options_as_note(TrainArgs& args) {
+  nlohmann::json out;
+  each_kept(args, [&](const char* name, const auto& member) { out[name] = member; });
+  return out.dump();
+}
+
+/// Takes from a run's note what the command line does not give.
+void take_from_note(TrainArgs& args, const CLI::App& verb, const std::string& note, const fs::path& from) {
+  const auto kept = nlohmann::json::parse(note, nullptr, false);
+  require(kept.is_object(), from.string(), ": the options of the run cannot be read");
+  const bool other_data = verb.count("FOLDER") + verb.count("--procedural") > 0;
+  each_kept(args, [&](const std::string& name, auto& member) {
+    const bool names_data =
+        name == "FOLDER" || name == "--procedural" || (name == "--captions" && other_data);
+    if (verb.count(name) > 0 || (names_data && other_data)) return;
+    try {
+      kept.at(name).get_to(member);
+    } catch (const nlohmann::json::exception& error) {
+      throw Error(from.string(), ": the run's option ", name, " cannot be read: ", error.what());
+    }
+  });
+}
+
+/// save/NAME, by the folder's own name.
+fs::path default_save(const TrainArgs& args) {
+  if (args.procedural > 0) return "save/procedural";
+  fs::path folder = fs::absolute(args.folder).lexically_normal();
+  if (!folder.has_filename()) folder = folder.parent_path();
+  const fs::path name = folder.stem();
+  return fs::path("save") / (name.empty() ? "run" : name);
+}
+
+void fill_in_choices(TrainArgs& a) {
+  a.data.captions = a.captions;
+  a.data.first_frame = a.first_frame == "keep"   ? motion::FirstFrame::keep
+                       : a.first_frame == "drop" ? motion::FirstFrame::drop
+                                                 : motion::FirstFrame::automatic;
+  a.training.validation = a.validation == "mod2"    ? Validation::mod2
+                          : a.validation == "final" ? Validation::final
+                                                    : Validation::dense;
+  a.training.level_weights = a.level_weights == "softmax" ? LevelWeights::softmax : LevelWeights::exp;
+  a.model.seed = a.training.seed;
+}
+
+motion::Dataset load_data(const TrainArgs& args) {
+  if (args.procedural == 0) {
+    fmt::print("reading {}\n", args.folder);
+    return motion::Dataset::from_bvh(args.folder, args.data);
+  }
+  // A clip holds a window and a half; its rate is a multiple of the model's, so nothing need be resampled.
+  motion::ProceduralOptions options;
+  options.clips = args.procedural;
+  options.seconds = std::max(10.0, 1.5 * static_cast<double>(args.data.frames) / args.data.rate);
+  options.rate = args.data.rate * std::max(1.0, std::ceil(30 / args.data.rate));
+  fmt::print("computing {} of built-in motion\n", counted(options.clips, "clip"));
+  return motion::Dataset::from_motions(motion::procedural_motions(options), args.data);
+}
+
+void print_data(const motion::Dataset& data, const TrainArgs& args) {
+  const motion::MotionFormat& format = data.format;
+  const double window = static_cast<double>(format.frames) / format.rate;
+  const auto windows = [&](const std::vector<motion::DatasetClip>& clips) {
+    std::size_t n = 0;
+    for (const motion::DatasetClip& clip : clips) n += data.starts(clip);
+    return n;
+  };
+  std::string clips = fmt::format("{} to train on, {} kept for testing", data.train.size(), data.test.size());
+  if (!data.skipped.empty())
+    clips += fmt::format("; {} left out, shorter than {}", data.skipped.size(), duration(window));
+  print_fact("clips", clips);
+  print_fact("windows", fmt::format("{} to train on, of {} frames at {} per second ({})", windows(data.train),
+                                    format.frames, brief(format.rate), duration(window)));
+  const std::size_t used = data.train.size() + data.test.size();
+  if (args.procedural > 0)
+    print_fact("captions", "those of the built-in motion");
+  else if (args.captions.empty())
+    print_fact("captions", "made from the names of the files (no captions.tsv in the folder, no --captions)");
+  else
+    print_fact("captions",
+               fmt::format("from {}{}", args.captions,
+                           data.named == 0 ? std::string()
+                                           : fmt::format("; {} of {} are not in it and are called by "
+                                                         "the names of their files",
+                                                         data.named, counted(used, "clip"))));
+  print_fact("words", fmt::format("{} in the training captions", format.vocabulary.size() - 1));
+  print_fact("skeleton",
+             fmt::format("{}, root {}; {} of a pose change{}", counted(format.skeleton().size(), "joint"),
+                         format.skeleton().joints[format.layout.root()].name, counted(format.dof(), "number"),
+                         format.layout.root_position() ? ", the root's position among them" : ""));
+  if (data.dropped_frames > 0)
+    print_fact("first frame",
+               fmt::format("{} at the start of clips left out{}", counted(data.dropped_frames, "frame"),
+                           args.first_frame == "auto" ? " (a T-pose before the motion)" : ""));
+}
+
+volatile std::sig_atomic_t caught_signal = 0;
+
+extern "C" void catch_signal(int number) {
+  caught_signal = number;
+  std::signal(number, SIG_DFL);  // the second one ends the process at once
+}
+
+int run_training(TrainArgs args, const CLI::App& verb) {
+  require(!(verb.count("FOLDER") && verb.count("--procedural")),
+          "give a folder of clips or --procedural, not both");
+  if (verb.count("--procedural")) require(args.procedural > 0, "--procedural 0: expected at least 1 clip");
+  const bool has_data = !args.folder.empty() || args.procedural > 0;
+  require(has_data || args.resume,
+          "there is nothing to train on: give a folder of BVH clips, or --procedural");
+  require(has_data || !args.save.empty(), "--resume needs --save DIR, the folder of the run");
+  const fs::path folder = args.save.empty() ? default_save(args) : fs::path(args.save);
+  const RunFiles files{folder};
+  std::size_t done = 0;
+  if (args.resume) {
+    require(fs::exists(files.checkpoint()), "there is no run to resume in ", folder.string(), " (no ",
+            files.checkpoint().filename().string(), " there)");
+    const RunRecord record = read_run_record(files.checkpoint());
+    done = record.iteration;
+    if (const auto note = record.notes.find("options"); note != record.notes.end())
+      take_from_note(args, verb, note->second, files.checkpoint());
+    else
+      require(has_data, files.checkpoint().string(),
+              " does not say what it was trained on; give the folder and the options of its first start");
+  } else {
+    require(!fs::exists(files.checkpoint()), folder.string(),
+            " already holds a run; continue it with --resume, or choose another --save");
+  }
+  if (!args.folder.empty()) {
+    args.captions = captions_for(args.folder, args.captions).string();
+    args.folder = fs::absolute(args.folder).lexically_normal().string();
+    if (!args.captions.empty()) args.captions = fs::absolute(args.captions).lexically_normal().string();
+  }
+  fill_in_choices(args);
+  if (args.resume && done >= args.training.iterations) {
+    fmt::print("{} has all its {} already; --iterations N asks for more\n", folder.string(),
+               counted(done, "iteration"));
+    return 0;
+  }
+  make_folder(folder);
+
+  const Context context;
+  const motion::Dataset data = load_data(args);
+  print_data(data, args);
+  Dvgan model(context, data.format, args.model);
+  print_fact("generator",
+             fmt::format("{:.2f} million parameters (width {}, {} taps{})",
+                         1e-6 * static_cast<double>(parameter_count(named_parameters(model.generator()))),
+                         args.model.hidden, args.model.taps, args.model.final_cut ? ", final cut" : ""));
+  print_fact("device", describe(context.device()));
+  print_fact("saved to", fmt::format("{}, every {} and at the end", folder.string(),
+                                     duration(args.run.save_every_minutes * 60)));
+  fmt::print("{} iterations of {} critic steps and a generator step, batch {}{}\n", args.training.iterations,
+             args.training.critic_steps, args.training.batch,
+             done > 0 ? fmt::format("; resuming after iteration {}", done) : "");
+  fmt::print("Ctrl-C saves and stops. The Wasserstein estimate should rise quickly, then fall slowly.\n");
+
+  ProgressBar bar;
+  bar.start(args.training.iterations, done);
+  RunOptions run = args.run;
+  run.save_dir = folder;
+  run.resume = args.resume;
+  run.notes = {{"options", options_as_note(args)}};
+  run.should_stop = [] { return caught_signal != 0; };
+  run.report = [&](std::size_t iteration, const DvganLosses& losses) {
+    bar.update(iteration, {{"wasserstein", losses.wasserstein}, {"penalty", losses.penalty}});
+  };
+  std::signal(SIGINT, catch_signal);
+  std::signal(SIGTERM, catch_signal);
+  const RunResult result = train(model, data, args.training, run);
+  bar.finish();
+  fmt::print("{} after {} of {} iterations; saved in {}\n", result.stopped ? "stopped" : "finished",
+             result.iterations, args.training.iterations, folder.string());
+  if (result.stopped) fmt::print("continue: motiongan train dvgan --resume --save {}\n", folder.string());
+  fmt::print("generate: motiongan generate {} --text \"{}\"\n", folder.string(),
+             data.train.front().captions.front());
+  return caught_signal != 0 ? 128 + caught_signal : 0;
+}
+
+}  // namespace
+
+void add_train(CLI::App& app, Job& job) {
+  CLI::App* train = app.add_subcommand("train", "Train a model on captioned motion clips");
+  train->require_subcommand(1);
+  CLI::App* verb = train->add_subcommand(
+      "dvgan",
+      "Train a DVGAN (text to motion) on a folder of BVH clips.\n"
+      "Writes generator, critic, checkpoint, log.csv and split.tsv to the --save folder. Ctrl-C saves and "
+      "stops;\n"
+      "--resume continues as if the run had never stopped, and needs no option but --save.");
+  const auto args = std::make_shared<TrainArgs>();
+  TrainArgs& a = *args;
+  const auto option = [&](const char* name, auto& member, const char* text) {
+    return verb->add_option(name, member, text)->capture_default_str();
+  };
+  const CLI::Range at_least_one(std::size_t{1}, std::size_t{1} << 31);
+  verb->add_option("FOLDER", a.folder, "folder of BVH clips (and folders in it), or one clip");
+  verb->add_option(
+      "--captions", a.captions,
+      "file with a line `clip id <TAB> description` for each caption [FOLDER/captions.tsv if it is there, "
+      "else captions are made from file names]");
+  verb->add_option("--procedural", a.procedural,
+                   "instead of FOLDER: train on the built-in motion, CLIPS of it [68]")
+      ->expected(0, 1)
+      ->default_str("68")
+      ->type_name("CLIPS");
+  verb->add_option("--save", a.save, "folder of the run [save/NAME, NAME being the folder's]");
+  verb->add_flag("--resume", a.resume,
+                 "continue the run in --save; its options are those of its first start");
+
+  option("--frames", a.data.frames, "frames of a motion, a power of two")->group("Data");
+  option("--rate", a.data.rate, "frames per second")->group("Data");
+  verb->add_flag("--root-position,!--no-root-position", a.data.root_position,
+                 "learn where the root is, not only how it turns [on]")
+      ->group("Data");
+  option("--first-frame", a.first_frame,
+         "auto: drop T-poses put before the motion; keep; drop: the first frame")
+      ->check(CLI::IsMember({"auto", "keep", "drop"}))
+      ->group("Data");
+  option("--train-share", a.data.train_share, "share of the clips to train on; the rest is for testing")
+      ->group("Data");
+  option("--split-seed", a.data.split_seed, "which clips those are")->group("Data");
+
+  option("--hidden", a.model.hidden, "width of the networks")->check(at_least_one)->group("Model");
+  option("--taps", a.model.taps, "of the convolutions")->check(CLI::IsMember({3, 5}))->group("Model");
+  verb->add_flag("--final-cut,!--no-final-cut", a.model.final_cut, "generate twice the frames and cut [on]")
+      ->group("Model");
+  option("--validation", a.validation, "time scales that the critic judges: all, every second, the last")
+      ->check(CLI::IsMember({"dense", "mod2", "final"}))
+      ->group("Model");
+  option("--level-weights", a.level_weights, "how their scores are weighted")
+      ->check(CLI::IsMember({"exp", "softmax"}))
+      ->group("Model");
+
+  option("--iterations", a.training.iterations, "how long to train")->check(at_least_one)->group("Training");
+  option("--critic-steps", a.training.critic_steps, "in each iteration")
+      ->check(at_least_one)
+      ->group("Training");
+  option("--batch", a.training.batch, "motions in a step")->check(at_least_one)->group("Training");
+  option("--lambda", a.training.lambda_gp, "weight of the gradient penalty")->group("Training");
+  option("--learning-rate", a.training.adam.learning_rate, "Adam's, of both networks")->group("Training");
+  option("--beta1", a.training.adam.beta1, "Adam's")->group("Training");
+  option("--beta2", a.training.adam.beta2, "Adam's")->group("Training");
+  option("--epsilon", a.training.adam.epsilon, "Adam's")->group("Training");
+  verb->add_flag("--shift,!--no-shift", a.training.input_shift,
+                 "shift motions in time before the critic [on]")
+      ->group("Training");
+  option("--seed", a.training.seed, "of first weights, batches and noise")->group("Training");
+
+  option("--minutes", a.run.max_minutes, "stop (and save) after that long; 0: no limit")->group("Run");
+  option("--save-every", a.run.save_every_minutes, "minutes between two checkpoints; 0: only at the end")
+      ->group("Run");
+  option("--log-every", a.run.log_every, "iterations between two rows of log.csv")
+      ->check(at_least_one)
+      ->group("Run");
+  verb->callback([&job, args, verb] {
+    if (verb->count("--procedural") > 0 && verb->get_option("--procedural")->results().front().empty())
+      args->procedural = 68;
+    job = [args, verb] { return run_training(*args, *verb); };
+  });
+}
+
+}  // namespace motiongan::command
