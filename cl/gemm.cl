@@ -1,9 +1,10 @@
-// C = epilogue((accumulate ? C : 0) + sum over segments of A * B), row-major, made for CPU devices (correct on all).
+// C = epilogue((accumulate ? C : 0) + sum over segments of A * B), row-major, made for CPU devices (correct
+// on all).
 //
-// One work-group is one work-item: it takes a range of rows and a few panels of COLUMNS columns. A panel of B is copied
-// (or transposed) into private memory, then tiles of up to 12 x COLUMNS of C are held in registers while p runs.
-// Every element is fma(a, b, sum) over p ascending, segment after segment, starting from what C holds or 0: neither
-// the row, nor the size of its tile, nor the blocking of p changes a bit of the result.
+// One work-group is one work-item: it takes a range of rows and a few panels of COLUMNS columns. A panel of B
+// is copied (or transposed) into private memory, then tiles of up to 12 x COLUMNS of C are held in registers
+// while p runs. Every element is fma(a, b, sum) over p ascending, segment after segment, starting from what C
+// holds or 0: neither the row, nor the size of its tile, nor the blocking of p changes a bit of the result.
 
 #define COLUMNS (2 * VW)
 #ifdef REAL_IS_DOUBLE
@@ -33,8 +34,8 @@
 
 typedef JOIN(REAL, 4) real4;
 
-// Vectors in private memory are of type realv, aligned; those in tensors lie anywhere. PoCL's vstore writes pieces of 16
-// bytes, so a type of lower alignment stands in for it (and for vload) on the CPU.
+// Vectors in private memory are of type realv, aligned; those in tensors lie anywhere. PoCL's vstore writes
+// pieces of 16 bytes, so a type of lower alignment stands in for it (and for vload) on the CPU.
 #ifdef DEVICE_IS_CPU
 typedef realv anywhere __attribute__((aligned(REAL_BYTES)));
 typedef real4 anywhere4 __attribute__((aligned(REAL_BYTES)));
@@ -60,22 +61,22 @@ typedef real4 anywhere4 __attribute__((aligned(REAL_BYTES)));
 #define FMA_HALF(i) x##i = fma((realv)(a[i * row_stride]), b0, x##i);
 
 // tile[R][COLUMNS] += A * packed for `count` values of p; the second only for the first VW columns.
-#define DEFINE_MULTIPLY(R)                                                                                          \
-  inline void multiply_##R(global const real* a, size_t row_stride, size_t p_stride, uint count, const realv* b,   \
-                           realv* tile) {                                                                          \
-    ROWS_##R(LOAD) for (uint p = 0; p < count; ++p, a += p_stride, b += 2) {                                       \
-      const realv b0 = b[0], b1 = b[1];                                                                            \
-      ROWS_##R(FMA)                                                                                                \
-    }                                                                                                              \
-    ROWS_##R(STORE)                                                                                                \
-  }                                                                                                                \
-  inline void multiply_half_##R(global const real* a, size_t row_stride, size_t p_stride, uint count,              \
-                                const realv* b, realv* tile) {                                                     \
-    ROWS_##R(LOAD_HALF) for (uint p = 0; p < count; ++p, a += p_stride, b += 2) {                                  \
-      const realv b0 = b[0];                                                                                       \
-      ROWS_##R(FMA_HALF)                                                                                           \
-    }                                                                                                              \
-    ROWS_##R(STORE_HALF)                                                                                           \
+#define DEFINE_MULTIPLY(R)                                                                                   \
+  static inline void multiply_##R(global const real* a, size_t row_stride, size_t p_stride, uint count,      \
+                                  const realv* b, realv* tile) {                                             \
+    ROWS_##R(LOAD) for (uint p = 0; p < count; ++p, a += p_stride, b += 2) {                                 \
+      const realv b0 = b[0], b1 = b[1];                                                                      \
+      ROWS_##R(FMA)                                                                                          \
+    }                                                                                                        \
+    ROWS_##R(STORE)                                                                                          \
+  }                                                                                                          \
+  static inline void multiply_half_##R(global const real* a, size_t row_stride, size_t p_stride, uint count, \
+                                       const realv* b, realv* tile) {                                        \
+    ROWS_##R(LOAD_HALF) for (uint p = 0; p < count; ++p, a += p_stride, b += 2) {                            \
+      const realv b0 = b[0];                                                                                 \
+      ROWS_##R(FMA_HALF)                                                                                     \
+    }                                                                                                        \
+    ROWS_##R(STORE_HALF)                                                                                     \
   }
 
 // 12 rows take 24 of the 32 registers of a machine with 64-byte vectors, 6 rows 12 of the 16 of smaller ones.
@@ -91,10 +92,10 @@ DEFINE_MULTIPLY(4)
 DEFINE_MULTIPLY(2)
 DEFINE_MULTIPLY(1)
 
-// packed[panels][count][COLUMNS] from B stored [p][j]: a row of several panels is read in one go, for short pieces of
-// far rows come slowly.
-inline void pack_rows(global const real* b, size_t stride, uint count, uint panels, size_t panel_stride,
-                      realv* packed) {
+// packed[panels][count][COLUMNS] from B stored [p][j]: a row of several panels is read in one go, for short
+// pieces of far rows come slowly.
+static inline void pack_rows(global const real* b, size_t stride, uint count, uint panels,
+                             size_t panel_stride, realv* packed) {
   for (uint p = 0; p < count; ++p, b += stride, packed += 2) {
     global const real* from = b;
     realv* to = packed;
@@ -105,19 +106,19 @@ inline void pack_rows(global const real* b, size_t stride, uint count, uint pane
   }
 }
 
-// The same for the last panel when it is narrower. Its first `readable` rows may be read to COLUMNS; what stands past
-// `width` is never used.
-inline void pack_narrow_rows(global const real* b, size_t stride, uint count, uint width, uint readable,
-                             realv* packed) {
+// The same for the last panel when it is narrower. Its first `readable` rows may be read to COLUMNS; what
+// stands past `width` is never used.
+static inline void pack_narrow_rows(global const real* b, size_t stride, uint count, uint width,
+                                    uint readable, realv* packed) {
   readable = min(readable, count);
   pack_rows(b, stride, readable, 1, 0, packed);
   for (uint p = readable; p < count; ++p)
     for (uint j = 0; j < COLUMNS; ++j) ((real*)packed)[p * COLUMNS + j] = j < width ? b[p * stride + j] : 0;
 }
 
-// packed[count][COLUMNS] from B stored [j][p], columns from `width` on repeat the last one. Four values of p at a time: each
-// vector takes 4 values of VW / 4 rows; taking the even and the odd elements of pairs of them twice brings those of one
-// p together, in the order of the columns.
+// packed[count][COLUMNS] from B stored [j][p], columns from `width` on repeat the last one. Four values of p
+// at a time: each vector takes 4 values of VW / 4 rows; taking the even and the odd elements of pairs of them
+// twice brings those of one p together, in the order of the columns.
 #define AT(j) READ4(b + min((uint)(j), last) * stride)
 #if VW == 16
 #define GATHER(i) (realv)(AT(4 * i), AT(4 * i + 1), AT(4 * i + 2), AT(4 * i + 3))
@@ -126,7 +127,8 @@ inline void pack_narrow_rows(global const real* b, size_t stride, uint count, ui
 #else
 #define GATHER(i) AT(i)
 #endif
-inline void pack_transposed(global const real* b, size_t stride, uint count, uint width, realv* packed) {
+static inline void pack_transposed(global const real* b, size_t stride, uint count, uint width,
+                                   realv* packed) {
   const uint whole = count / 4 * 4;
   for (uint h = 0; h < 2 && h * VW < width; ++h, b += VW * stride) {
     const uint last = width - 1 - h * VW;
@@ -146,11 +148,11 @@ inline void pack_transposed(global const real* b, size_t stride, uint count, uin
   }
 }
 
-// sums[2 * DIRECT] += a row of A times DIRECT panels of B stored [p][j], read where they are: for few rows, packing costs as
-// much as the product.
+// sums[2 * DIRECT] += a row of A times DIRECT panels of B stored [p][j], read where they are: for few rows,
+// packing costs as much as the product.
 #define DIRECT 4
-inline void multiply_direct(global const real* a, size_t a_stride, global const real* b, size_t b_stride, uint count,
-                            realv* sums) {
+static inline void multiply_direct(global const real* a, size_t a_stride, global const real* b,
+                                   size_t b_stride, uint count, realv* sums) {
   realv s0 = sums[0], s1 = sums[1], s2 = sums[2], s3 = sums[3];
   realv s4 = sums[4], s5 = sums[5], s6 = sums[6], s7 = sums[7];
   for (uint p = 0; p < count; ++p, a += a_stride, b += b_stride) {
@@ -164,9 +166,9 @@ inline void multiply_direct(global const real* a, size_t a_stride, global const 
   sums[4] = s4, sums[5] = s5, sums[6] = s6, sums[7] = s7;
 }
 
-// A row of a tile is two vectors. When the panel is narrower but holds one, the second vector is the one that ends with
-// the panel: it overlaps the first, and nothing outside is touched.
-inline void load_tile(global const real* c, size_t stride, uint rows, uint width, realv* tile) {
+// A row of a tile is two vectors. When the panel is narrower but holds one, the second vector is the one that
+// ends with the panel: it overlaps the first, and nothing outside is touched.
+static inline void load_tile(global const real* c, size_t stride, uint rows, uint width, realv* tile) {
   for (uint i = 0; i < rows; ++i, tile += 2, c += stride) {
     if (width == COLUMNS) {
       tile[0] = READ(c);
@@ -178,14 +180,15 @@ inline void load_tile(global const real* c, size_t stride, uint rows, uint width
 }
 
 // What follows the sum; a NaN stays one through the ReLU.
-inline real finish_one(real value, uint flags, global const real* bias, global const real* residual) {
+static inline real finish_one(real value, uint flags, global const real* bias, global const real* residual) {
   if (flags & BIAS) value += *bias;
   if (flags & RESIDUAL) value += *residual;
   return (flags & RELU) && value < 0 ? 0 : value;
 }
 
-inline void store_tile(global real* c, size_t stride, uint rows, uint width, global const real* bias,
-                       global const real* residual, size_t residual_stride, uint flags, const realv* tile) {
+static inline void store_tile(global real* c, size_t stride, uint rows, uint width, global const real* bias,
+                              global const real* residual, size_t residual_stride, uint flags,
+                              const realv* tile) {
   for (uint i = 0; i < rows; ++i, tile += 2, c += stride, residual += residual_stride) {
     if (width >= VW) {
       const uint second = width - VW;
@@ -203,22 +206,23 @@ inline void store_tile(global real* c, size_t stride, uint rows, uint width, glo
   }
 }
 
-// What a product needs to know, in one argument: PoCL takes its time over each. The same as GemmNumbers on the host.
+// What a product needs to know, in one argument: PoCL takes its time over each. The same as GemmNumbers on
+// the host.
 typedef struct {
   uint m, n, k, segments, flags;
   uint a_first, b_first, c_first, bias_first, residual_first;
-  uint a_row, a_p, b_p, b_column, c_row, residual_row;  // distances: element (i, p) of A is a[i * a_row + p * a_p]
+  uint a_row, a_p, b_p, b_column, c_row,
+      residual_row;  // distances: element (i, p) of A is a[i * a_row + p * a_p]
   uint a_batch, b_batch, c_batch;
   uint a_segment[4], b_segment[4];
   uint rows_per_group, panels_per_group, panels_at_once;
 } Numbers;
 
-// One of a_row and a_p is 1, and one of b_p and b_column. Groups: x over panels, y over rows, z over the batch.
-__attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm(global const real* restrict a,
-                                                                global const real* restrict b, global real* restrict c,
-                                                                global const real* restrict bias,
-                                                                global const real* restrict residual,
-                                                                const Numbers g) {
+// One of a_row and a_p is 1, and one of b_p and b_column. Groups: x over panels, y over rows, z over the
+// batch.
+__attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm(
+    global const real* restrict a, global const real* restrict b, global real* restrict c,
+    global const real* restrict bias, global const real* restrict residual, const Numbers g) {
   realv packed[BLOCK * 2], tile[MOST_ROWS * 2];
   const size_t batch = get_group_id(2);
   a += g.a_first + batch * g.a_batch;
@@ -236,7 +240,8 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm(global const rea
   const uint block = BLOCK / panels_at_once;
   const bool together = segments * k <= block;
 
-  for (uint first_column = column_begin; first_column < column_end; first_column += panels_at_once * COLUMNS) {
+  for (uint first_column = column_begin; first_column < column_end;
+       first_column += panels_at_once * COLUMNS) {
     const uint columns = min(panels_at_once * (uint)COLUMNS, column_end - first_column);
     if (b_column == 1 && row_end - row_begin <= 2 && columns == DIRECT * COLUMNS) {
       for (uint i = row_begin; i < row_end; ++i) {
@@ -244,7 +249,8 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm(global const rea
         global real* at = c + i * c_row + first_column;
         for (uint w = 0; w < 2 * DIRECT; ++w) sums[w] = flags & ACCUMULATE ? READ(at + w * VW) : (realv)(0);
         for (uint s = 0; s < segments; ++s)
-          multiply_direct(a + g.a_segment[s] + i * a_row, a_p, b + g.b_segment[s] + first_column, b_p, k, sums);
+          multiply_direct(a + g.a_segment[s] + i * a_row, a_p, b + g.b_segment[s] + first_column, b_p, k,
+                          sums);
         for (uint w = 0; w < 2 * DIRECT; w += 2)
           store_tile(at + w * VW, 0, 1, COLUMNS, bias + first_column + w * VW,
                      residual + i * residual_row + first_column + w * VW, 0, flags, sums + w);
