@@ -54,7 +54,8 @@ class Adam {
                  root = std::sqrt(1 - std::pow(options_.beta2, t));
     values_.context().launch("adam", "adam", detail::vector_grid(values_), values_, gradients_, mean_,
                              square_, values_.size(), Real{options_.beta1}, Real{options_.beta2},
-                             Real{step_size}, Real{root}, Real{options_.epsilon});
+                             Real{1 - options_.beta1}, Real{1 - options_.beta2}, Real{step_size}, Real{root},
+                             Real{options_.epsilon});
   }
 
   /// The running means, for checkpoints: all parameters one after the other.
