@@ -80,7 +80,7 @@ inline void in_two_threads(std::size_t count, const std::function<void(std::size
 
 /// The clip at its natural stride (`stride` 0) or at the one given, its root position that of its own
 /// travelling joint (`root` -1) or of the joint given. Only clips that hold a window are encoded.
-inline EncodedClip encode_clip(Motion motion, std::size_t frames, double rate, bool root_position,
+inline EncodedClip encode_clip(Motion motion, std::size_t frames, double rate, bool root_position, bool align,
                                std::size_t stride, int root) {
   EncodedClip out;
   check_motion(motion);
@@ -90,6 +90,7 @@ inline EncodedClip encode_clip(Motion motion, std::size_t frames, double rate, b
   out.stride = stride != 0 ? stride : natural_stride(motion.rate, rate);
   out.skeleton = motion.skeleton;
   if (!long_enough(out, frames, rate)) return out;
+  if (align) align_heading(motion, static_cast<std::size_t>(out.root));
   const double target = rate * static_cast<double>(out.stride);
   if (std::abs(motion.rate / target - 1) > 1e-6) motion = resample(motion, target);
   out.frames = motion.frames;

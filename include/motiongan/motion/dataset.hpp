@@ -22,6 +22,7 @@ struct DatasetOptions {
   double rate = 4.0;                 ///< frames per second of a window
   std::filesystem::path captions{};  ///< lines of `clip id <TAB> description`; empty: captions from names
   bool root_position = true;         ///< whether the root's position is part of a pose
+  bool align_heading = true;         ///< turn each clip so that it starts without yaw; the papers do not
   double train_share = 0.67;         ///< of the clips; the rest is for testing
   std::uint64_t split_seed = 1;
   FirstFrame first_frame = FirstFrame::automatic;  ///< for BVH files

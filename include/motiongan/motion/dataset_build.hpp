@@ -37,7 +37,7 @@ inline std::vector<Used> encode_all(const std::vector<ClipSource>& sources, Data
   const DatasetOptions& o = data.options;
   std::vector<EncodedClip> clips(sources.size());
   in_two_threads(sources.size(), [&](std::size_t i) {
-    clips[i] = encode_clip(sources[i].load(), o.frames, o.rate, o.root_position, 0, -1);
+    clips[i] = encode_clip(sources[i].load(), o.frames, o.rate, o.root_position, o.align_heading, 0, -1);
   });
 
   std::size_t longest = 0;
@@ -74,8 +74,9 @@ inline std::vector<Used> encode_all(const std::vector<ClipSource>& sources, Data
   }
   in_two_threads(used.size(), [&](std::size_t i) {
     EncodedClip& clip = used[i].clip;
-    if (clip.stride == data.stride && (clip.root == root || !o.root_position)) return;
-    clip = encode_clip(sources[used[i].source].load(), o.frames, o.rate, o.root_position, data.stride, root);
+    if (clip.stride == data.stride && (clip.root == root || !(o.root_position || o.align_heading))) return;
+    clip = encode_clip(sources[used[i].source].load(), o.frames, o.rate, o.root_position, o.align_heading,
+                       data.stride, root);
   });
   // Resampling rounds a clip's length down to whole frames: it may have lost its only window.
   std::erase_if(used, [&](const Used& u) {

@@ -85,7 +85,7 @@ inline Performance jumping_jack(Performer p) {
               b.feet[i].lift = 7 * p.size * hop;
               b.feet[i].heel_rise = b.feet[i].toe_bend = 8 + 16 * hop;
               ArmTarget& a = b.arms[i];
-              a.abduction = p.hang + 4 + (std::min(1.1, p.size) * 138) * open;
+              a.abduction = p.hang + 4 + (96 + 40 * p.size) * open;
               a.twist = -12 + 50 * open;
               a.flexion = 4 + 6 * open;
               a.elbow = p.elbow + 8 * std::sin(pi * open);
@@ -128,7 +128,7 @@ inline Performance squat(Performer p) {
 
 inline Performance kick(Performer p) {
   const double period = 3.0 / p.tempo, angle = 42 + 24 * p.size;  // of the leg from hanging, degrees
-  const double far = 80 * std::sin(radians(angle)), high = 85 - 80 * std::cos(radians(angle));
+  const double far = 86 * std::sin(radians(angle)), high = 88 - 86 * std::cos(radians(angle));
   const std::string leg = std::string("the ") + p.side_name() + " leg", how = p.tempo_word();
   const std::string size = p.size_word("a low kick with ", "a high kick with ");
   return {[=](double t) {
