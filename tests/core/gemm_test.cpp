@@ -23,7 +23,7 @@ void check(Precision precision, const Plan& plan, GemmEngine engine, std::mt1993
   for (std::size_t e = 0; e < ours.size(); ++e)
     if (!(std::abs(ours[e] - reference[e]) <= (reference[e] == sentinel ? 0 : allowed)) && wrong++ == 0)
       first_wrong = e;
-  CAPTURE(detail::describe(problem.call));
+  CAPTURE(concat(problem.call));
   CAPTURE(static_cast<int>(precision));
   CAPTURE(plan.accumulate);
   CAPTURE(plan.bias);
@@ -179,7 +179,7 @@ TEST_CASE("a row's bits do not depend on the rows around it, the columns beside 
               }
             CAPTURE(rows);
             CAPTURE(row);
-            CAPTURE(detail::describe(call));
+            CAPTURE(concat(call));
             CHECK(equal);
           }
         GemmCall again = whole.call;

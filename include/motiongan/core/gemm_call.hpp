@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <limits>
+#include <ostream>
 
 #include "motiongan/core/tensor.hpp"
 
@@ -29,6 +30,14 @@ struct GemmCall {
   bool relu = false;
 };
 
+/// The head of every message about a product.
+inline std::ostream& operator<<(std::ostream& out, const GemmCall& g) {
+  return out << "gemm m=" << g.m << " n=" << g.n << " k=" << g.k << " a_ld=" << g.a_ld
+             << (g.a_transposed ? " (transposed)" : "") << " b_ld=" << g.b_ld
+             << (g.b_transposed ? " (transposed)" : "") << " c_ld=" << g.c_ld << " segments=" << g.segments
+             << " batch=" << g.batch;
+}
+
 namespace detail {
 
 // The flags of the kernels in cl/gemm.cl.
@@ -39,28 +48,29 @@ inline cl_uint gemm_flags(const GemmCall& g) {
          (g.residual.empty() ? 0 : gemm_residual) | (g.relu ? gemm_relu : 0);
 }
 
-inline std::string describe(const GemmCall& g) {
-  return concat("gemm m=", g.m, " n=", g.n, " k=", g.k, " a_ld=", g.a_ld,
-                g.a_transposed ? " (transposed)" : "", " b_ld=", g.b_ld,
-                g.b_transposed ? " (transposed)" : "", " c_ld=", g.c_ld, " segments=", g.segments,
-                " batch=", g.batch);
-}
+/// A tensor's shape, made into text only when a message is.
+struct ShapeOf {
+  const Tensor& tensor;
+  friend std::ostream& operator<<(std::ostream& out, const ShapeOf& shape) {
+    return out << to_string(shape.tensor.shape());
+  }
+};
 
 /// Refuses a matrix that does not lie inside its tensor.
 inline void check_matrix(const GemmCall& g, const char* name, const Tensor& tensor, std::size_t offset,
                          std::size_t rows, std::size_t columns, std::size_t ld, std::size_t batch_stride) {
-  if (rows == 0 || columns == 0) return;
-  require(!tensor.empty(), describe(g), ": ", name, " is empty");
+  if (rows == 0 || columns == 0 || g.batch == 0) return;
+  require(!tensor.empty(), g, ": ", name, " is empty");
   const std::size_t end = offset + (g.batch - 1) * batch_stride + (rows - 1) * ld + columns;
-  require(end <= tensor.size(), describe(g), ": ", name, " (", rows, " rows of ", columns,
-          ", leading dimension ", ld, ", offset ", offset, ", batch stride ", batch_stride, ") needs ", end,
-          " elements, its tensor ", to_string(tensor.shape()), " has ", tensor.size());
-  require(tensor.offset() + end <= std::numeric_limits<cl_uint>::max(), describe(g), ": ", name,
+  require(end <= tensor.size(), g, ": ", name, " (", rows, " rows of ", columns, ", leading dimension ", ld,
+          ", offset ", offset, ", batch stride ", batch_stride, ") needs ", end, " elements, its tensor ",
+          ShapeOf{tensor}, " has ", tensor.size());
+  require(tensor.offset() + end <= std::numeric_limits<cl_uint>::max(), g, ": ", name,
           " is too large: kernels count elements in 32 bits; use a smaller batch or fewer frames");
 }
 
 inline void check_gemm(const Context& context, const GemmCall& g) {
-  require(g.segments >= 1 && g.segments <= 4, describe(g), ": segments must be 1 to 4");
+  require(g.segments >= 1 && g.segments <= 4, g, ": segments must be 1 to 4");
   for (std::size_t s = 0; s < g.segments; ++s) {
     check_matrix(g, "A", g.a, g.a_offset[s], g.a_transposed ? g.k : g.m, g.a_transposed ? g.m : g.k, g.a_ld,
                  g.a_batch_stride);
@@ -68,22 +78,20 @@ inline void check_gemm(const Context& context, const GemmCall& g) {
                  g.b_batch_stride);
   }
   check_matrix(g, "C", g.c, g.c_offset, g.m, g.n, g.c_ld, g.c_batch_stride);
-  require(g.m <= 1 || g.c_ld >= g.n, describe(g), ": the rows of C overlap: c_ld must be at least n");
+  require(g.m <= 1 || g.c_ld >= g.n, g, ": the rows of C overlap: c_ld must be at least n");
   const std::size_t c_size = (g.m - 1) * g.c_ld + g.n;
-  require(g.batch <= 1 || g.c_batch_stride >= c_size || (g.m > 1 && g.c_batch_stride >= g.n) || g.m == 0,
-          describe(g), ": the problems of the batch overlap in C: c_batch_stride is ", g.c_batch_stride);
+  require(g.batch <= 1 || g.c_batch_stride >= c_size || (g.m > 1 && g.c_batch_stride >= g.n) || g.m == 0, g,
+          ": the problems of the batch overlap in C: c_batch_stride is ", g.c_batch_stride);
   if (!g.bias.empty())
-    require(g.bias.size() == g.n, describe(g), ": bias has shape ", to_string(g.bias.shape()),
-            ", n elements expected");
+    require(g.bias.size() == g.n, g, ": bias has shape ", ShapeOf{g.bias}, ", n elements expected");
   if (!g.residual.empty() && g.m > 0) {
     const std::size_t end = g.residual_offset + (g.m - 1) * g.residual_ld + g.n;
-    require(end <= g.residual.size(), describe(g), ": the residual (leading dimension ", g.residual_ld,
-            ", offset ", g.residual_offset, ") needs ", end, " elements, its tensor ",
-            to_string(g.residual.shape()), " has ", g.residual.size());
+    require(end <= g.residual.size(), g, ": the residual (leading dimension ", g.residual_ld, ", offset ",
+            g.residual_offset, ") needs ", end, " elements, its tensor ", ShapeOf{g.residual}, " has ",
+            g.residual.size());
   }
   for (const Tensor* tensor : {&g.a, &g.b, &g.c, &g.bias, &g.residual})
-    require(tensor->empty() || tensor->context() == context, describe(g),
-            ": a tensor belongs to another context");
+    require(tensor->empty() || tensor->context() == context, g, ": a tensor belongs to another context");
 }
 
 }  // namespace detail
