@@ -23,7 +23,7 @@ inline std::vector<Var> grad(const std::vector<Var>& outputs, const std::vector<
   std::size_t oldest = static_cast<std::size_t>(-1);
   std::unordered_set<const Node*> wanted;
   for (const Var& input : inputs) {
-    require(input.requires_grad(), "grad: an input of shape ", to_string(input.shape()),
+    require(input.requires_grad(), "grad: an input of shape ", input.shape(),
             " is a constant; make it with Var::leaf or compute it from one");
     wanted.insert(input.node().get());
     oldest = std::min(oldest, input.node()->id);
@@ -61,8 +61,8 @@ inline std::vector<Var> grad(const std::vector<Var>& outputs, const std::vector<
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     if (!leads_on(outputs[i])) continue;
     const Var seed = seeds[i].empty() ? ones(outputs[i].context(), outputs[i].shape()) : seeds[i];
-    require(seed.shape() == outputs[i].shape(), "grad: the seed is ", to_string(seed.shape()),
-            ", the output ", to_string(outputs[i].shape()));
+    require(seed.shape() == outputs[i].shape(), "grad: the seed is ", seed.shape(), ", the output ",
+            outputs[i].shape());
     add(outputs[i].node().get(), seed);
   }
   for (const Node* node : order) {
@@ -81,8 +81,7 @@ inline std::vector<Var> grad(const std::vector<Var>& outputs, const std::vector<
     for (std::size_t i = 0; i < of_inputs.size(); ++i) {
       if (!needs[i] || of_inputs[i].empty()) continue;
       require(of_inputs[i].shape() == node->inputs[i].shape(), "derivative of ", node->operation,
-              " by input ", i, " has shape ", to_string(of_inputs[i].shape()), " instead of ",
-              to_string(node->inputs[i].shape()));
+              " by input ", i, " has shape ", of_inputs[i].shape(), " instead of ", node->inputs[i].shape());
       add(node->inputs[i].node().get(), of_inputs[i]);
     }
   }

@@ -19,11 +19,7 @@ inline std::size_t element_count(const Shape& shape) {
 }
 
 /// "[32, 64, 93]"
-inline std::string to_string(const Shape& shape) {
-  std::string text = "[";
-  for (std::size_t i = 0; i < shape.size(); ++i) text += concat(i ? ", " : "", shape[i]);
-  return text + "]";
-}
+inline std::string to_string(const Shape& shape) { return concat(shape); }
 
 /// A contiguous array on the device. Copies share the data; the data are not initialised.
 class Tensor {
@@ -59,7 +55,7 @@ class Tensor {
 
   /// The same data under another shape of the same size.
   Tensor reshape(Shape shape) const {
-    require(element_count(shape) == size_, "cannot reshape ", to_string(shape_), " to ", to_string(shape));
+    require(element_count(shape) == size_, "cannot reshape ", shape_, " to ", shape);
     Tensor t = *this;
     t.shape_ = std::move(shape);
     return t;
@@ -68,7 +64,7 @@ class Tensor {
   /// A piece of the same data: `shape` elements from `first` on.
   Tensor view(std::size_t first, Shape shape) const {
     const std::size_t n = element_count(shape);
-    require(first + n <= size_, "view of ", n, " elements from ", first, " does not fit ", to_string(shape_));
+    require(first + n <= size_, "view of ", n, " elements from ", first, " does not fit ", shape_);
     Tensor t = *this;
     t.offset_ += first;
     t.size_ = n;
@@ -79,7 +75,7 @@ class Tensor {
   /// Uploads without waiting for the queue.
   template <class T>
   void write(std::span<const T> values) {
-    require(values.size() == size_, values.size(), " values given for a tensor of shape ", to_string(shape_));
+    require(values.size() == size_, values.size(), " values given for a tensor of shape ", shape_);
     if (context_->precision() == Precision::f64)
       write_as<double>(values);
     else
@@ -94,7 +90,7 @@ class Tensor {
 
   /// The only value of a one-element tensor; waits for the queue.
   double item() const {
-    require(size_ == 1, "item() needs one element, the shape is ", to_string(shape_));
+    require(size_ == 1, "item() needs one element, the shape is ", shape_);
     return to_host<double>()[0];
   }
 

@@ -59,9 +59,9 @@ inline void load_parameters(const std::vector<NamedParameter>& parameters, const
   for (const NamedParameter& p : parameters) {
     const auto found = file.tensors.find(prefix + p.name);
     require(found != file.tensors.end(), where, ": the tensor \"", prefix + p.name, "\" of shape ",
-            to_string(file_shape(p)), " is missing; the file belongs to another model or to other options");
+            file_shape(p), " is missing; the file belongs to another model or to other options");
     require(found->second.shape == file_shape(p), where, ": the tensor \"", prefix + p.name, "\" has shape ",
-            to_string(found->second.shape), ", expected ", to_string(file_shape(p)),
+            found->second.shape, ", expected ", file_shape(p),
             "; the file belongs to a model of other sizes");
     all.push_back(found->second.as<double>());
     for (double v : all.back())

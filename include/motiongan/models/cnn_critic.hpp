@@ -74,7 +74,7 @@ class CnnCritic {
   /// One score per sample, [B], of motion [N, B, M] with encoded text [B, k].
   Var operator()(const Var& motion, const Var& h_txt) const {
     require(motion.dim(0) == options_.frames && motion.dim(2) == options_.dof, "CnnCritic: motion ",
-            to_string(motion.shape()), ", expected [", options_.frames, ", batch, ", options_.dof, "]");
+            motion.shape(), ", expected [", options_.frames, ", batch, ", options_.dof, "]");
     const std::size_t batch = motion.dim(1);
     const Var text = reshape(h_txt, {1, batch, options_.hidden});
     Var h = encode_(motion);

@@ -17,8 +17,7 @@ inline Tensor unary(const char* kernel, const Tensor& x, double a = 0, double b 
 }
 
 inline Tensor binary(const char* kernel, const Tensor& x, const Tensor& y, double a = 0, double b = 0) {
-  require(x.shape() == y.shape(), kernel, ": shapes differ, ", to_string(x.shape()), " and ",
-          to_string(y.shape()));
+  require(x.shape() == y.shape(), kernel, ": shapes differ, ", x.shape(), " and ", y.shape());
   Tensor out(x.context(), x.shape());
   x.context().launch("elementwise", kernel, vector_grid(x), x, y, out, x.size(), Real{a}, Real{b});
   return out;

@@ -42,7 +42,7 @@ inline Var pad(const Var& x, std::size_t axis, std::size_t before, std::size_t a
 inline Var slice(const Var& x, std::size_t axis, std::size_t first, std::size_t count) {
   const detail::AxisView view(x.shape(), axis);
   require(first + count <= view.count, "slice: ", count, " entries from ", first, " of axis ", axis, " of ",
-          to_string(x.shape()));
+          x.shape());
   Shape shape = x.shape();
   shape[axis] = count;
   Tensor value;
@@ -84,8 +84,7 @@ inline Var concat_axis(const std::vector<Var>& parts, std::size_t axis) {
     require(rest.size() == shape.size(), "concat_axis: ranks differ");
     shape[axis] += rest[axis];
     rest[axis] = shape[axis];
-    require(rest == shape, "concat_axis: ", to_string(part.shape()), " does not fit the others along axis ",
-            axis);
+    require(rest == shape, "concat_axis: ", part.shape(), " does not fit the others along axis ", axis);
   }
   Tensor value(parts[0].context(), shape);
   std::size_t first = 0;
@@ -121,7 +120,7 @@ struct FrameShift {
 inline Var shift_frames(const Var& x, const Indices& offset, std::size_t frames_out,
                         const FrameShift& shift = {}) {
   require(x.value().rank() == 3 && offset.size() == x.dim(1), "shift_frames: ", offset.size(),
-          " offsets for motion ", to_string(x.shape()));
+          " offsets for motion ", x.shape());
   const std::size_t frames_in = x.dim(0), batch = x.dim(1), channels = x.dim(2);
   Tensor value(x.context(), {frames_out, batch, channels});
   x.context().launch("layout", "shift_frames",

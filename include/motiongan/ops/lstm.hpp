@@ -118,8 +118,8 @@ inline Var lstm_layer(const Var& x_gates, const Var& w_hh, const Var& h_first, c
                       const Indices& lengths = {}) {
   const std::size_t frames = x_gates.dim(0), batch = x_gates.dim(1), k = w_hh.dim(1), slab = batch * k;
   require(x_gates.dim(2) == 4 * k && w_hh.dim(0) == 4 * k && h_first.size() == slab && c_first.size() == slab,
-          "lstm_layer: gates ", to_string(x_gates.shape()), ", weights ", to_string(w_hh.shape()),
-          ", first state ", to_string(h_first.shape()));
+          "lstm_layer: gates ", x_gates.shape(), ", weights ", w_hh.shape(), ", first state ",
+          h_first.shape());
   const Context& context = x_gates.context();
   Tensor states(context, {2, frames, batch, k});
   const Tensor gates(context, {frames, batch, 4 * k});

@@ -10,16 +10,15 @@ namespace motiongan {
 inline Var matmul(const Var& a, const Var& b, bool a_transposed = false, bool b_transposed = false) {
   const std::size_t rank = a.value().rank();
   require((rank == 2 || rank == 3) && b.value().rank() == rank && (rank == 2 || a.dim(0) == b.dim(0)),
-          "matmul: shapes ", to_string(a.shape()), " and ", to_string(b.shape()));
+          "matmul: shapes ", a.shape(), " and ", b.shape());
   const std::size_t a_rows = a.dim(rank - 2), a_columns = a.dim(rank - 1), b_rows = b.dim(rank - 2),
                     b_columns = b.dim(rank - 1);
   GemmCall call;
   call.m = a_transposed ? a_columns : a_rows;
   call.k = a_transposed ? a_rows : a_columns;
   call.n = b_transposed ? b_rows : b_columns;
-  require(call.k == (b_transposed ? b_columns : b_rows), "matmul: inner sizes differ in ",
-          to_string(a.shape()), a_transposed ? "^T" : "", " and ", to_string(b.shape()),
-          b_transposed ? "^T" : "");
+  require(call.k == (b_transposed ? b_columns : b_rows), "matmul: inner sizes differ in ", a.shape(),
+          a_transposed ? "^T" : "", " and ", b.shape(), b_transposed ? "^T" : "");
   call.batch = rank == 3 ? a.dim(0) : 1;
   call.a = a.value();
   call.b = b.value();

@@ -59,8 +59,8 @@ inline Var expand(const Var& x, std::size_t outer, std::size_t count, std::size_
 inline Var sum_middle(const Var& x, std::size_t outer, std::size_t count, std::size_t inner, double scale,
                       Shape shape) {
   require(x.size() == outer * count * inner && element_count(shape) == outer * inner,
-          "sum_middle: ", to_string(x.shape()), " is not ", outer, " x ", count, " x ", inner,
-          ", or does not give ", to_string(shape));
+          "sum_middle: ", x.shape(), " is not ", outer, " x ", count, " x ", inner, ", or does not give ",
+          shape);
   Tensor value = detail::sum_middle_value(x.value(), outer, count, inner, scale, std::move(shape));
   return record("sum_middle", {x}, std::move(value),
                 [=](const Node& self, const Var& g, const Needs&) -> std::vector<Var> {
@@ -72,9 +72,8 @@ inline Var sum_middle(const Var& x, std::size_t outer, std::size_t count, std::s
 /// [outer, count, inner].
 inline Var expand(const Var& x, std::size_t outer, std::size_t count, std::size_t inner, double scale,
                   Shape shape) {
-  require(x.size() == outer * inner && element_count(shape) == outer * count * inner,
-          "expand: ", to_string(x.shape()), " is not ", outer, " x ", inner, ", or does not give ",
-          to_string(shape));
+  require(x.size() == outer * inner && element_count(shape) == outer * count * inner, "expand: ", x.shape(),
+          " is not ", outer, " x ", inner, ", or does not give ", shape);
   Tensor value = detail::expand_value(x.value(), outer, count, inner, scale, std::move(shape));
   return record("expand", {x}, std::move(value),
                 [=](const Node& self, const Var& g, const Needs&) -> std::vector<Var> {
@@ -140,7 +139,7 @@ inline Var sum_frames(const Var& x, std::size_t times, double scale = 1) {
 /// relu(big + small repeated): big is [count*T, ...], small [T, ...]. One pass instead of three.
 inline Var relu_of_sum(const Var& big, const Var& small) {
   require(big.size() % small.size() == 0 && big.size() / big.dim(0) * small.dim(0) == small.size(),
-          "relu_of_sum: shapes ", to_string(big.shape()), " and ", to_string(small.shape()));
+          "relu_of_sum: shapes ", big.shape(), " and ", small.shape());
   const std::size_t outer = small.dim(0), count = big.dim(0) / outer, inner = small.size() / outer;
   const Context& context = big.context();
   Tensor value(context, big.shape());

@@ -146,10 +146,10 @@ struct TapsExtras {
 /// out, in] (op transposes) or, `transposed`, [taps, in, out]; y is [frames_out, ..., out].
 inline Var taps(const Var& x, const Var& w, const Offsets& offsets, std::size_t frames_out,
                 bool transposed = false, const TapsExtras& extras = {}) {
-  require(w.value().rank() == 3 && w.dim(0) == offsets.size(), "taps: weights ", to_string(w.shape()),
-          " for ", offsets.size(), " taps");
-  require(x.shape().back() == w.dim(transposed ? 1 : 2), "taps: input ", to_string(x.shape()),
-          " does not fit weights ", to_string(w.shape()));
+  require(w.value().rank() == 3 && w.dim(0) == offsets.size(), "taps: weights ", w.shape(), " for ",
+          offsets.size(), " taps");
+  require(x.shape().back() == w.dim(transposed ? 1 : 2), "taps: input ", x.shape(), " does not fit weights ",
+          w.shape());
   detail::Epilogue epilogue;
   if (!extras.bias.empty()) epilogue.bias = extras.bias.value();
   if (!extras.residual.empty()) epilogue.residual = extras.residual.value();

@@ -44,7 +44,7 @@ class Adam {
     std::size_t at = 0;
     for (std::size_t i = 0; i < gradients.size(); ++i) {
       require(gradients[i].shape() == parameters_[i].shape(), "Adam: gradient ", i, " has shape ",
-              to_string(gradients[i].shape()), ", the parameter ", to_string(parameters_[i].shape()));
+              gradients[i].shape(), ", the parameter ", parameters_[i].shape());
       detail::copy_tensor(gradients[i].value(), gradients_.view(at, gradients[i].shape()));
       at += gradients[i].size();
     }

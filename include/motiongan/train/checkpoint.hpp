@@ -31,8 +31,8 @@ inline io::SafeTensor host_copy(const Tensor& t) {
 inline void restore(Tensor& t, const io::SafeTensors& file, const std::string& name,
                     const std::string& where) {
   const io::SafeTensor& from = file.at(name);
-  require(from.shape == t.shape(), where, ": \"", name, "\" has shape ", to_string(from.shape), ", expected ",
-          to_string(t.shape()));
+  require(from.shape == t.shape(), where, ": \"", name, "\" has shape ", from.shape, ", expected ",
+          t.shape());
   const std::vector<double> values = from.as<double>();
   t.write(std::span<const double>(values));
 }
