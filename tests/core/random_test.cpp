@@ -124,6 +124,20 @@ TEST_CASE("a sample is the same alone and in a batch, a frame the same in a long
     const std::vector<float> last = normals(later, 1, batch, channels);
     for (std::size_t i = 0; i < last.size(); ++i) REQUIRE(last[i] == all[3 * batch * channels + i]);
   }
+  // Each sample from a frame of its own, as the final cut needs it; also before frame 0.
+  const std::vector<cl_int> from{0, 2, 1};
+  RandomKey earlier = key;
+  earlier.first_frame = -1;
+  const std::vector<float> cut =
+                               random_normal(floats(), earlier, 3, 3, 20, Indices(floats(), from)).to_host(),
+                           whole = normals(key, 6, 3, 20);
+  for (std::size_t t = 0; t < 3; ++t)
+    for (std::size_t b = 0; b < 3; ++b)
+      for (std::size_t c = 0; c < 20; ++c) {
+        const long frame = static_cast<long>(t) - 1 + from[b];
+        if (frame >= 0)
+          REQUIRE(cut[(t * 3 + b) * 20 + c] == whole[(static_cast<std::size_t>(frame) * 3 + b) * 20 + c]);
+      }
   const std::vector<float> uniform = random_uniform(floats(), key, 9).to_host();
   RandomKey fifth = key;
   fifth.first_sample = 4;

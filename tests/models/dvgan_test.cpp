@@ -1,0 +1,175 @@
+// DVGAN as its user has it: generation by key, and files.
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "small_data.hpp"
+
+using namespace motiongan;
+using namespace motiongan::testing;
+
+namespace {
+
+using Poses = std::vector<std::vector<float>>;
+constexpr const char* caption = "a person walks";
+
+const Context& context() {
+  static const Context c;
+  return c;
+}
+
+Dvgan made(const DvganOptions& options = {.hidden = 16}) {
+  return Dvgan(context(), small_data().format, options);
+}
+
+std::filesystem::path scratch(const char* name) {
+  return std::filesystem::temp_directory_path() /
+         (std::string("motiongan_dvgan_test_") + name + ".safetensors");
+}
+
+/// What load() says of the model's file after `change`.
+std::string refusal(const std::function<void(io::SafeTensors&)>& change) {
+  const auto path = scratch("changed");
+  made().save(path);
+  io::SafeTensors file = io::SafeTensors::read(path);
+  change(file);
+  file.write(path);
+  const std::string text = message_of([&] { Dvgan::load(context(), path); });
+  if (text != "no error") CHECK(says(text, path.string() + ": "));
+  std::filesystem::remove(path);
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("a sample is the same alone, in a batch, and across batches of 64") {
+  const Dvgan model = made();
+  const Poses all = model.generate_poses(caption, {.count = 67, .seed = 5});
+  REQUIRE(all.size() == 67);
+  for (std::size_t i : {0, 2, 63, 64, 66}) {
+    CAPTURE(i);
+    CHECK(model.generate_poses(caption, {.count = 1, .seed = 5, .first_sample = i})[0] == all[i]);
+  }
+  CHECK(model.generate_poses(caption, {.count = 3, .seed = 5}) == Poses(all.begin(), all.begin() + 3));
+}
+
+TEST_CASE("seeds, samples and captions make a difference, the same key does not") {
+  const Dvgan model = made();
+  const Poses a = model.generate_poses(caption, {.count = 2, .seed = 1});
+  CHECK(model.generate_poses(caption, {.count = 2, .seed = 1}) == a);
+  CHECK(a[0] != a[1]);
+  CHECK(model.generate_poses(caption, {.count = 2, .seed = 2})[0] != a[0]);
+  const auto& words = model.format().vocabulary.words();
+  REQUIRE(words.size() > 3);
+  CHECK(model.generate_poses(words[2], {})[0] != model.generate_poses(words[3], {})[0]);
+  CHECK(made({.hidden = 16, .seed = 2}).generate_poses(caption, {})[0] !=
+        made().generate_poses(caption, {})[0]);
+}
+
+TEST_CASE("captions: unknown words count as unknown, no word is an error") {
+  const Dvgan model = made();
+  CHECK(model.generate_poses("zyxwv", {}) == model.generate_poses("qqqqq", {}));
+  CHECK(says(message_of([&] { model.generate("", {}); }), "has no words"));
+  CHECK(says(message_of([&] { model.generate(" !? ", {}); }), "has no words"));
+}
+
+TEST_CASE("motions have the format's frames, rate and skeleton") {
+  const Dvgan model = made();
+  const std::vector<motion::Motion> motions = model.generate(caption, {.count = 2});
+  REQUIRE(motions.size() == 2);
+  for (const motion::Motion& m : motions) {
+    CHECK(m.frames == 8);
+    CHECK(m.rate == 4);
+    CHECK(m.skeleton.size() == small_data().format.skeleton().size());
+    for (const auto& p : m.positions) CHECK(std::isfinite(p[0] + p[1] + p[2]));
+  }
+  CHECK(model.generate(caption, {.count = 0}).empty());
+}
+
+TEST_CASE("a file holds all that is needed: loaded, it generates the same bits") {
+  for (const DvganOptions& options :
+       {DvganOptions{.hidden = 16}, DvganOptions{.hidden = 8, .final_cut = false},
+        DvganOptions{.hidden = 8, .taps = 5, .seed = 4}}) {
+    Dvgan model = made(options);
+    const auto path = scratch("round");
+    model.save(path);
+    Dvgan loaded = Dvgan::load(context(), path);
+    CHECK(all_values(loaded.generator()) == all_values(model.generator()));
+    CHECK(loaded.generate_poses(caption, {.count = 3, .seed = 9}) ==
+          model.generate_poses(caption, {.count = 3, .seed = 9}));
+    CHECK(loaded.options().taps == options.taps);
+    CHECK(loaded.options().final_cut == options.final_cut);
+    CHECK(loaded.format().vocabulary.words() == model.format().vocabulary.words());
+    CHECK(loaded.format().normalizer.mean() == model.format().normalizer.mean());
+    const auto again = scratch("again");
+    loaded.save(again);
+    CHECK(io::SafeTensors::read(again).tensors == io::SafeTensors::read(path).tensors);
+    CHECK(io::SafeTensors::read(again).metadata == io::SafeTensors::read(path).metadata);
+    std::filesystem::remove(path);
+    std::filesystem::remove(again);
+  }
+}
+
+TEST_CASE("with and without final cut") {
+  const Dvgan with = made({.hidden = 8, .final_cut = true}),
+              without = made({.hidden = 8, .final_cut = false});
+  CHECK(with.generator().levels() == 4);  // 16 frames made, 8 kept
+  CHECK(without.generator().levels() == 3);
+  CHECK(without.generator().cuts(context(), {}, 4).empty());
+  const RandomKey key{.seed = 6};
+  for (cl_int cut : with.generator().cuts(context(), key, 500).to_host()) {
+    CHECK(cut >= 0);
+    CHECK(cut <= 8);
+  }
+}
+
+TEST_CASE("sizes that cannot be are refused") {
+  motion::MotionFormat format = small_data().format;
+  format.frames = 33;
+  const std::string text = message_of([&] { Dvgan(context(), format, {.hidden = 8}); });
+  CHECK(says(text, "33"));
+  CHECK(says(text, "32 and 64"));
+  CHECK(says(message_of([] { made({.hidden = 0}); }), "must be positive"));
+  CHECK(says(message_of([] { made({.hidden = 8, .taps = 4}); }), "4 taps"));
+}
+
+TEST_CASE("files that are not this model are refused by name, with what is wrong") {
+  CHECK(refusal([](auto&) {}) == "no error");
+  CHECK(says(refusal([](auto& f) { f.metadata.clear(); }), "not a motiongan model"));
+  CHECK(says(refusal([](auto& f) { f.metadata["motiongan_model"] = "ranker"; }), "\"ranker\""));
+  CHECK(says(refusal([](auto& f) { f.metadata.erase("format"); }), "metadata cannot be read"));
+  CHECK(says(refusal([](auto& f) { f.metadata["format"] = "{\"frames\": 8"; }), "metadata cannot be read"));
+  CHECK(says(
+      refusal([](auto& f) { f.metadata["options"] = R"({"hidden": 16, "taps": 4, "final_cut": true})"; }),
+      "taps 4 is out of range"));
+  CHECK(says(
+      refusal([](auto& f) { f.metadata["options"] = R"({"hidden": 32, "taps": 3, "final_cut": true})"; }),
+      "has shape"));
+  CHECK(says(
+      refusal([](auto& f) { f.metadata["options"] = R"({"hidden": -1, "taps": 3, "final_cut": true})"; }),
+      "out of range"));
+  CHECK(says(refusal([](auto& f) { f.tensors.erase("decode.bias"); }), "\"decode.bias\""));
+  CHECK(says(refusal([](auto& f) {
+               f.tensors["decode.bias"] = io::SafeTensor::of(
+                   f.at("decode.bias").shape,
+                   std::vector<float>(f.at("decode.bias").count(), std::numeric_limits<float>::quiet_NaN()));
+             }),
+             "\"decode.bias\" holds"));
+}
+
+TEST_CASE("a file cut short is refused by name, wherever it was cut") {
+  const auto path = scratch("short");
+  for (const double share : {0.0, 0.001, 0.1, 0.9, 0.9999}) {
+    made().save(path);
+    const auto size = static_cast<double>(std::filesystem::file_size(path));
+    std::filesystem::resize_file(path, static_cast<std::uintmax_t>(size * share));
+    CAPTURE(share);
+    CHECK(says(message_of([&] { Dvgan::load(context(), path); }), path.string() + ": "));
+  }
+  std::ofstream(path) << "this is text, not a model";
+  CHECK(says(message_of([&] { Dvgan::load(context(), path); }), path.string() + ": "));
+  std::filesystem::remove(path);
+  CHECK(says(message_of([&] { Dvgan::load(context(), path); }), path.string() + ": no such file"));
+}

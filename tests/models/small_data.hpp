@@ -1,0 +1,44 @@
+// A small data set of procedural motion, and models of a few weights for it.
+#pragma once
+#include <motiongan/models/dvgan.hpp>
+#include <motiongan/motion/dataset.hpp>
+#include <motiongan/motion/procedural.hpp>
+
+namespace motiongan::testing {
+
+/// Windows of `frames` frames at 4 Hz from 12 clips of six seconds, with captions of different lengths.
+inline const motion::Dataset& small_data(std::size_t frames = 8) {
+  const auto make = [](std::size_t n) {
+    return motion::Dataset::from_motions(
+        motion::procedural_motions({.clips = 12, .seconds = 6, .rate = 8, .seed = 3}),
+        {.frames = n, .rate = 4});
+  };
+  static const motion::Dataset eight = make(8), sixteen = make(16);
+  require(frames == 8 || frames == 16, "small_data: 8 or 16 frames");
+  return frames == 8 ? eight : sixteen;
+}
+
+/// Parameters one after the other, to compare two models bit for bit.
+template <class Model>
+std::vector<std::vector<float>> all_values(Model& model) {
+  std::vector<std::vector<float>> all;
+  for (const NamedParameter& p : named_parameters(model)) all.push_back(p.value->value().to_host());
+  return all;
+}
+
+/// What an action's Error says.
+template <class Action>
+std::string message_of(const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+inline bool says(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace motiongan::testing
