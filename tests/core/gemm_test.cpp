@@ -192,6 +192,27 @@ TEST_CASE("a row's bits do not depend on the rows around it, the columns beside 
   }
 }
 
+TEST_CASE("a transposed copy of B gives the same bits, so weights may be turned once for sampling") {
+  std::mt19937 random(8);
+  const Context& context = context_of(Precision::f32);
+  const std::size_t n = 300, k = 257;
+  const std::vector<double> b = random_values(random, n * k, Precision::f32);
+  std::vector<double> turned(n * k);
+  for (std::size_t p = 0; p < k; ++p)
+    for (std::size_t j = 0; j < n; ++j) turned[j * k + p] = b[p * n + j];
+  for (const std::size_t m : {1, 2, 9, 64}) {
+    GemmCall call{.m = m, .n = n, .k = k, .c = Tensor(context, {m, n}), .a_ld = k, .b_ld = n, .c_ld = n};
+    call.a = upload(context, random_values(random, m * k, Precision::f32), 0);
+    call.b = upload(context, b, 3);
+    GemmCall other = call;
+    other.b = upload(context, turned, 0), other.b_ld = k, other.b_transposed = true;
+    other.c = Tensor(context, {m, n});
+    gemm(context, call, GemmEngine::native);
+    gemm(context, other, GemmEngine::native);
+    CHECK(call.c.to_host() == other.c.to_host());
+  }
+}
+
 TEST_CASE("a NaN reaches the result, through the ReLU too") {
   const Context& context = context_of(Precision::f32);
   std::vector<float> a(6, 1.0f);
