@@ -210,10 +210,10 @@ inline Performance march(Performer p) {
   gait.half_width = p.stance - 1;
   gait.toe_out = p.toe_out;
   gait.behind = 1;
-  gait.lift = 27 * p.size;
+  gait.lift = 25 * p.size;
   gait.lift_peak = 0.5;
   gait.push_off = 20;
-  gait.swing_heel = 22;
+  gait.swing_heel = 30 + 18 * p.size;
   gait.strike = 0;
   gait.always = true;
   const Carriage c{.pelvis_turn = 2, .sway = 4, .arm_swing = 34 * p.size, .elbow = 40 + p.elbow, .lean = 1};

@@ -14,11 +14,14 @@ inline Performance jump(Performer p) {
   const double period = crouch + push + flight + landing + rest;
   const double distance = forward ? 75 * p.size : 0, deep = 20 + 8 * p.size;
   const double take_off = crouch + push, touch = take_off + flight, speed = 981.0 * flight / 2;
+  // The legs straighten a little after take-off and bend before touch-down: feet gain speed more slowly than
+  // the body, and would hold it back if they were stretched.
+  const double up = 1.5 - 2.5 * p.size, down = -1 - 3 * p.size, drift = (down - up) / flight;
   // Height over standing; the slopes at take-off and touch-down are those of free flight.
   const Curve height{{0.1, 0},
                      {crouch, -deep},
-                     {take_off, 5, speed},
-                     {touch, 1, -speed},
+                     {take_off, up, speed + drift},
+                     {touch, down, drift - speed},
                      {touch + landing, -deep * 0.8},
                      {period - 0.1, 0}};
   const std::string how = p.tempo_word(), where = forward ? "forward" : "in place";
@@ -27,7 +30,7 @@ inline Performance jump(Performer p) {
             const double cycles = t / period + p.start, n = std::floor(cycles), at = (cycles - n) * period;
             const double fly = (at - take_off) / flight, arc = 4 * fly * (1 - fly) * rise;
             const bool airborne = fly > 0 && fly < 1;
-            b.height = 96 + (airborne ? 5 + (1 - 5) * fly + arc : height(at));
+            b.height = 96 + (airborne ? up + (down - up) * fly + arc : height(at));
             const double bent =
                 Curve{{0.1, 0},         {crouch, 1}, {take_off, 0.05}, {touch, 0.1}, {touch + landing, 0.8},
                       {period - 0.1, 0}}(at);
@@ -38,7 +41,7 @@ inline Performance jump(Performer p) {
             b.bend += 20 * bent;
             b.nod -= 16 * bent;
             const double moved = distance * ease(fly);
-            const double lift = airborne ? arc * ease(fly / 0.3) * ease((1 - fly) / 0.3) + 3 * hump(fly) : 0;
+            const double lift = airborne ? 0.9 * arc * ease(fly / 0.24) * ease((1 - fly) / 0.24) : 0;
             const double point = Curve{{take_off - 0.16, 0},
                                        {take_off, 34, 160},
                                        {take_off + 0.25 * flight, 48},
