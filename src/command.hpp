@@ -41,8 +41,10 @@ inline std::string brief(double value, int digits = 4) { return fmt::format("{:.
 inline std::string duration(double seconds) {
   if (seconds < 120) return brief(seconds, seconds < 10 ? 3 : 4) + " s";
   const auto whole = static_cast<std::size_t>(seconds + 0.5);
-  if (whole < 7200) return fmt::format("{} min {} s", whole / 60, whole % 60);
-  return fmt::format("{} h {} min", whole / 3600, whole % 3600 / 60);
+  const bool hours = whole >= 7200;
+  const std::size_t large = whole / (hours ? 3600 : 60), small = hours ? whole % 3600 / 60 : whole % 60;
+  const std::string first = fmt::format("{} {}", large, hours ? "h" : "min");
+  return small == 0 ? first : fmt::format("{} {} {}", first, small, hours ? "min" : "s");
 }
 
 /// How wide a text is on a terminal, taking every code point for one column.
@@ -86,6 +88,13 @@ inline const char* kind_of(const Device& device) {
 
 inline std::string describe(const Device& device) {
   return fmt::format("{}: {} ({})", kind_of(device), device.name, device.platform_name);
+}
+
+/// A path as a reader of the terminal finds it again: relative where it lies below the current folder.
+inline std::string shown(const fs::path& path) {
+  std::error_code problem;
+  const fs::path near = fs::proximate(path, problem);
+  return (problem || near.empty() || *near.begin() == "..") ? path.string() : near.string();
 }
 
 /// Makes the folder and those above it where they are not there yet.

@@ -5,10 +5,11 @@
 #include "motiongan/motion/bvh.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/motion/procedural.hpp"
+#include "motiongan/motion/statistics.hpp"
 #include "motiongan/train/progress.hpp"
-#include "motiongan/train/train.hpp"
-#include "motiongan/view/line_plot.hpp"
+#include "plot_log.hpp"
 #include "show.hpp"
+#include "training.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -18,29 +19,195 @@ struct DemoArgs {
   std::string out = "demo-out";
 };
 
-constexpr const char* marker = "made by motiongan demo";
+constexpr const char* marker = "made by `motiongan demo`";
 
 /// An empty folder, made anew if an earlier demo made it; never somebody else's files.
 void renew(const fs::path& out) {
   const fs::path note = out / "README.txt";
-  if (fs::exists(out) && (!fs::is_directory(out) || !fs::is_empty(out))) {
+  if (fs::exists(out) && !(fs::is_directory(out) && fs::is_empty(out))) {
     std::string first;
     std::ifstream in(note);
     std::getline(in, first);
     require(first == marker, out.string(),
             " is there already and was not made by the demo; choose another --out");
-    for (const auto& entry : fs::directory_iterator(out)) fs::remove_all(entry.path());
+    for (const auto& entry : fs::directory_iterator(out))
+      if (entry.path() != note) fs::remove_all(entry.path());
   }
   make_folder(out);
-  motion::write_text_atomically(note, std::string(marker) + "\n");
+  motion::write_text_atomically(note, concat(marker, R"(, which renews this folder when it runs again
+
+motions.html   real and generated motion side by side; open it in a browser
+poses.png      the same as rows of poses
+training.png   the Wasserstein estimate and the penalty over the training
+bvh/           the motions as BVH files
+save/          the run: model, checkpoint, log.csv
+)"));
 }
 
-struct Pair {
-  std::string caption, name;
-  const motion::DatasetClip* real = nullptr;
-};
+TrainArgs demo_options(const DemoArgs& demo) {
+  TrainArgs args;
+  args.procedural = 68;
+  args.data.frames = 32;
+  args.data.rate = 8;
+  args.model.hidden = 64;
+  args.training.batch = 32;
+  args.training.critic_steps = 5;
+  args.training.adam.learning_rate = 5e-4;
+  args.run.max_minutes = demo.minutes;
+  fill_in_choices(args);
+  return args;
+}
+
+RunResult train_for(Dvgan& model, const motion::Dataset& data, TrainArgs& args, const fs::path& save) {
+  ProgressBar bar;
+  bar.start(0);
+  RunOptions run = args.run;
+  run.save_dir = save;
+  run.save_every_minutes = 0;
+  run.notes = {{"options", options_as_note(args)}};
+  run.should_stop = [] { return caught_signal() != 0; };
+  const auto start = std::chrono::steady_clock::now();
+  run.report = [&](std::size_t iteration, const DvganLosses& losses) {
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+    const double left = std::max(0.0, std::round(60 * run.max_minutes - passed.count()));
+    bar.update(iteration,
+               {{"wasserstein", losses.wasserstein}, {"penalty", losses.penalty}, {"seconds left", left}});
+  };
+  catch_signals();
+  const RunResult result = train(model, data, args.training, run);
+  bar.finish();
+  return result;
+}
+
+motion::Motion first_window(const motion::Dataset& data, const motion::DatasetClip& clip,
+                            std::size_t start = 0) {
+  std::vector<float> poses(data.format.frames * data.format.dof());
+  data.window(clip, start, poses);
+  return data.to_motion(poses);
+}
+
+/// A clip of each of some actions that look different from one another.
+std::vector<const motion::DatasetClip*> clips_to_show(const motion::Dataset& data) {
+  std::vector<const motion::DatasetClip*> out;
+  for (const std::string action : {"walk_", "run_", "jump_", "squat_", "kick_", "wave_"})
+    for (const motion::DatasetClip& clip : data.train)
+      if (clip.id.starts_with(action)) {
+        out.push_back(&clip);
+        break;
+      }
+  return out;
+}
+
+/// Writes BVH, page and picture: for each caption the real clip and two generated ones.
+void write_motions(const Dvgan& model, const motion::Dataset& data, const fs::path& out) {
+  constexpr double rate = 30;
+  make_folder(out / "bvh");
+  std::vector<view::ViewedMotion> page, strip;
+  for (const motion::DatasetClip* clip : clips_to_show(data)) {
+    const std::string& caption = clip->captions.front();
+    const std::string name = clip->id.substr(0, clip->id.find('_'));
+    const auto add = [&](const std::string& kind, const motion::Motion& motion, bool in_strip) {
+      const motion::Motion smooth = motion::resample(motion, rate);
+      motion::write_bvh(out / "bvh" / (name + "_" + kind + ".bvh"), smooth);
+      page.push_back({kind + ": " + caption, smooth});
+      if (in_strip) strip.push_back(page.back());
+    };
+    add("real", first_window(data, *clip), true);
+    const std::vector<motion::Motion> made = model.generate(caption, {.count = 2, .seed = 1});
+    for (std::size_t i = 0; i < made.size(); ++i) add(fmt::format("generated{}", i + 1), made[i], i == 0);
+  }
+  fmt::print("wrote {}: {} BVH files\n", (out / "bvh").string(), page.size());
+  show_page(out / "motions.html", page, "motiongan demo: real and generated motion");
+  show_strip(out / "poses.png", strip);
+}
+
+motion::StatisticsComparison compare_with_real(const Dvgan& model, const motion::Dataset& data) {
+  std::vector<motion::Motion> real, made;
+  for (const auto* part : {&data.train, &data.test})
+    for (const motion::DatasetClip& clip : *part)
+      for (std::size_t start = 0; start < data.starts(clip); start += data.stride * data.format.frames / 2)
+        real.push_back(first_window(data, clip, start));
+  for (const motion::DatasetClip& clip : data.train)
+    for (motion::Motion& motion : model.generate(clip.captions.front(), {.count = 2, .seed = 2}))
+      made.push_back(std::move(motion));
+  return motion::compare(motion::measure(made), motion::measure(real));
+}
+
+/// What happened, in plain words.
+void judge(const CsvTable& log, const motion::StatisticsComparison& c) {
+  const std::vector<double> wasserstein = log.column("wasserstein"), iteration = log.column("iteration");
+  const CurveSummary w = summarise(wasserstein);
+  fmt::print("\nwhat it saw\n");
+  fmt::print("  The Wasserstein estimate rose to {} by iteration {:.0f}, and ended at {}", brief(w.peak, 3),
+             iteration[w.peak_at], brief(w.last, 3));
+  const bool fell = w.last < 0.9 * w.peak;
+  fmt::print("{}\n", fell ? ", as it should: up quickly, then down slowly." : ": it has not fallen yet.");
+  fmt::print("  Spread of the joints' angles, generated over real: {} (1 would be the same).\n",
+             brief(c.median_spread_ratio, 3));
+  fmt::print("  Speed of the joints, generated over real: {}.\n", brief(c.mean_speed_ratio, 3));
+  fmt::print("  {}% of the generated angles lie outside the range of the real clips.\n",
+             brief(100 * c.values_outside, 3));
+  std::vector<std::string> doubts;
+  if (!fell) doubts.emplace_back("the estimate has not fallen");
+  if (!(c.median_spread_ratio > 0.5)) doubts.emplace_back("the motion varies too little");
+  if (!(c.median_spread_ratio < 1.6)) doubts.emplace_back("the motion varies too much");
+  if (!(c.mean_speed_ratio > 0.5)) doubts.emplace_back("it moves too slowly");
+  if (!(c.mean_speed_ratio < 1.8)) doubts.emplace_back("it moves too fast, which looks like trembling");
+  if (!(c.values_outside < 0.1)) doubts.emplace_back("many poses are not like real ones");
+  if (doubts.empty()) {
+    fmt::print("  That looks healthy for so short a training. More of it makes the motion better.\n");
+  } else {
+    std::string list;
+    for (const std::string& doubt : doubts) list += (list.empty() ? "" : "; ") + doubt;
+    fmt::print("  Not there yet: {}. More training should help (--minutes 10).\n", list);
+  }
+}
+
+int run_demo(const DemoArgs& demo) {
+  const fs::path out = demo.out;
+  const Context context;  // first of all: without a device nothing is touched
+  renew(out);
+  fmt::print("1. data\n");
+  TrainArgs args = demo_options(demo);
+  const motion::Dataset data = load_data(args);
+  print_data(data, args);
+  fmt::print("\n2. training for {} (Ctrl-C: stop earlier and go on)\n", duration(60 * demo.minutes));
+  Dvgan model(context, data.format, args.model);
+  print_model(model);
+  const RunResult result = train_for(model, data, args, out / "save");
+
+  fmt::print("\n3. new motion after {}\n", counted(result.iterations, "iteration"));
+  write_motions(model, data, out);
+  const CsvTable log = read_csv_log(RunFiles{out / "save"}.log());
+  write_png(out / "training.png", plot_log(log, "motiongan demo"));
+  fmt::print("wrote {}: the course of the training\n", (out / "training.png").string());
+  judge(log, compare_with_real(model, data));
+
+  const std::string save = (out / "save").string();
+  fmt::print("\nlook at {} in a browser\n", fs::absolute(out / "motions.html").lexically_normal().string());
+  fmt::print("\nmore from this model\n");
+  fmt::print("  motiongan generate {} --text \"{}\" --count 4 --rate 30 --html more.html\n", save,
+             clips_to_show(data).front()->captions.front());
+  fmt::print("  motiongan train dvgan --resume --save {}\n", save);
+  fmt::print("the same with your own clips (captions.tsv: a line `clip id <TAB> description` for each)\n");
+  fmt::print("  motiongan train dvgan my-clips --captions captions.tsv --save save/mine\n");
+  fmt::print("  motiongan generate save/mine --text \"walk\" --count 4 --rate 30 --html mine.html\n");
+  return 0;
+}
 
 }  // namespace
 
-void add_demo(CLI::App&, Job&) { (void)renew; }
+void add_demo(CLI::App& app, Job& job) {
+  CLI::App* verb = app.add_subcommand(
+      "demo", "Train a small model on built-in motion, then show what it learnt: BVH, a page, pictures");
+  const auto args = std::make_shared<DemoArgs>();
+  verb->add_option("--minutes", args->minutes, "of training")
+      ->capture_default_str()
+      ->check(CLI::Range(0.001, 1e5));
+  verb->add_option("--out", args->out, "folder to write to; renewed if an earlier demo made it")
+      ->capture_default_str()
+      ->type_name("DIR");
+  verb->callback([&job, args] { job = [args] { return run_demo(*args); }; });
+}
+
 }  // namespace motiongan::command

@@ -1,81 +1,9 @@
 // motiongan train dvgan: from clips and captions to a model.
-#include <csignal>
-#include <map>
-#include <nlohmann/json.hpp>
-
-#include "command.hpp"
-#include "motiongan/motion/procedural.hpp"
 #include "motiongan/train/progress.hpp"
-#include "motiongan/train/train.hpp"
+#include "training.hpp"
 
 namespace motiongan::command {
 namespace {
-
-struct TrainArgs {
-  // What a run is. Kept in its checkpoint, so that --resume needs none of it.
-  std::string folder, captions;
-  std::size_t procedural = 0;  // clips of built-in motion; 0: the folder's
-  motion::DatasetOptions data;
-  std::string first_frame = "auto", validation = "dense", level_weights = "exp";
-  DvganOptions model;
-  DvganTrainOptions training;
-  // What only this start of it is.
-  std::string save;
-  bool resume = false;
-  RunOptions run;
-};
-
-/// Calls f(name, member) for all that is kept, by the name of its option.
-template <class F>
-void each_kept(TrainArgs& a, F&& f) {
-  f("FOLDER", a.folder);
-  f("--captions", a.captions);
-  f("--procedural", a.procedural);
-  f("--frames", a.data.frames);
-  f("--rate", a.data.rate);
-  f("--root-position", a.data.root_position);
-  f("--first-frame", a.first_frame);
-  f("--train-share", a.data.train_share);
-  f("--split-seed", a.data.split_seed);
-  f("--hidden", a.model.hidden);
-  f("--taps", a.model.taps);
-  f("--final-cut", a.model.final_cut);
-  f("--seed", a.training.seed);
-  f("--iterations", a.training.iterations);
-  f("--critic-steps", a.training.critic_steps);
-  f("--batch", a.training.batch);
-  f("--lambda", a.training.lambda_gp);
-  f("--learning-rate", a.training.adam.learning_rate);
-  f("--beta1", a.training.adam.beta1);
-  f("--beta2", a.training.adam.beta2);
-  f("--epsilon", a.training.adam.epsilon);
-  f("--validation", a.validation);
-  f("--level-weights", a.level_weights);
-  f("--shift", a.training.input_shift);
-}
-
-std::string options_as_note(TrainArgs& args) {
-  nlohmann::json out;
-  each_kept(args, [&](const char* name, const auto& member) { out[name] = member; });
-  return out.dump();
-}
-
-/// Takes from a run's note what the command line does not give.
-void take_from_note(TrainArgs& args, const CLI::App& verb, const std::string& note, const fs::path& from) {
-  const auto kept = nlohmann::json::parse(note, nullptr, false);
-  require(kept.is_object(), from.string(), ": the options of the run cannot be read");
-  const bool other_data = verb.count("FOLDER") + verb.count("--procedural") > 0;
-  each_kept(args, [&](const std::string& name, auto& member) {
-    const bool names_data =
-        name == "FOLDER" || name == "--procedural" || (name == "--captions" && other_data);
-    if (verb.count(name) > 0 || (names_data && other_data)) return;
-    try {
-      kept.at(name).get_to(member);
-    } catch (const nlohmann::json::exception& error) {
-      throw Error(from.string(), ": the run's option ", name, " cannot be read: ", error.what());
-    }
-  });
-}
 
 /// save/NAME, by the folder's own name.
 fs::path default_save(const TrainArgs& args) {
@@ -84,76 +12,6 @@ fs::path default_save(const TrainArgs& args) {
   if (!folder.has_filename()) folder = folder.parent_path();
   const fs::path name = folder.stem();
   return fs::path("save") / (name.empty() ? "run" : name);
-}
-
-void fill_in_choices(TrainArgs& a) {
-  a.data.captions = a.captions;
-  a.data.first_frame = a.first_frame == "keep"   ? motion::FirstFrame::keep
-                       : a.first_frame == "drop" ? motion::FirstFrame::drop
-                                                 : motion::FirstFrame::automatic;
-  a.training.validation = a.validation == "mod2"    ? Validation::mod2
-                          : a.validation == "final" ? Validation::final
-                                                    : Validation::dense;
-  a.training.level_weights = a.level_weights == "softmax" ? LevelWeights::softmax : LevelWeights::exp;
-  a.model.seed = a.training.seed;
-}
-
-motion::Dataset load_data(const TrainArgs& args) {
-  if (args.procedural == 0) {
-    fmt::print("reading {}\n", args.folder);
-    return motion::Dataset::from_bvh(args.folder, args.data);
-  }
-  // A clip holds a window and a half; its rate is a multiple of the model's, so nothing need be resampled.
-  motion::ProceduralOptions options;
-  options.clips = args.procedural;
-  options.seconds = std::max(10.0, 1.5 * static_cast<double>(args.data.frames) / args.data.rate);
-  options.rate = args.data.rate * std::max(1.0, std::ceil(30 / args.data.rate));
-  fmt::print("computing {} of built-in motion\n", counted(options.clips, "clip"));
-  return motion::Dataset::from_motions(motion::procedural_motions(options), args.data);
-}
-
-void print_data(const motion::Dataset& data, const TrainArgs& args) {
-  const motion::MotionFormat& format = data.format;
-  const double window = static_cast<double>(format.frames) / format.rate;
-  const auto windows = [&](const std::vector<motion::DatasetClip>& clips) {
-    std::size_t n = 0;
-    for (const motion::DatasetClip& clip : clips) n += data.starts(clip);
-    return n;
-  };
-  std::string clips = fmt::format("{} to train on, {} kept for testing", data.train.size(), data.test.size());
-  if (!data.skipped.empty())
-    clips += fmt::format("; {} left out, shorter than {}", data.skipped.size(), duration(window));
-  print_fact("clips", clips);
-  print_fact("windows", fmt::format("{} to train on, of {} frames at {} per second ({})", windows(data.train),
-                                    format.frames, brief(format.rate), duration(window)));
-  const std::size_t used = data.train.size() + data.test.size();
-  if (args.procedural > 0)
-    print_fact("captions", "those of the built-in motion");
-  else if (args.captions.empty())
-    print_fact("captions", "made from the names of the files (no captions.tsv in the folder, no --captions)");
-  else
-    print_fact("captions",
-               fmt::format("from {}{}", args.captions,
-                           data.named == 0 ? std::string()
-                                           : fmt::format("; {} of {} are not in it and are called by "
-                                                         "the names of their files",
-                                                         data.named, counted(used, "clip"))));
-  print_fact("words", fmt::format("{} in the training captions", format.vocabulary.size() - 1));
-  print_fact("skeleton",
-             fmt::format("{}, root {}; {} of a pose change{}", counted(format.skeleton().size(), "joint"),
-                         format.skeleton().joints[format.layout.root()].name, counted(format.dof(), "number"),
-                         format.layout.root_position() ? ", the root's position among them" : ""));
-  if (data.dropped_frames > 0)
-    print_fact("first frame",
-               fmt::format("{} at the start of clips left out{}", counted(data.dropped_frames, "frame"),
-                           args.first_frame == "auto" ? " (a T-pose before the motion)" : ""));
-}
-
-volatile std::sig_atomic_t caught_signal = 0;
-
-extern "C" void catch_signal(int number) {
-  caught_signal = number;
-  std::signal(number, SIG_DFL);  // the second one ends the process at once
 }
 
 int run_training(TrainArgs args, const CLI::App& verb) {
@@ -198,11 +56,7 @@ int run_training(TrainArgs args, const CLI::App& verb) {
   const motion::Dataset data = load_data(args);
   print_data(data, args);
   Dvgan model(context, data.format, args.model);
-  print_fact("generator",
-             fmt::format("{:.2f} million parameters (width {}, {} taps{})",
-                         1e-6 * static_cast<double>(parameter_count(named_parameters(model.generator()))),
-                         args.model.hidden, args.model.taps, args.model.final_cut ? ", final cut" : ""));
-  print_fact("device", describe(context.device()));
+  print_model(model);
   print_fact("saved to", fmt::format("{}, every {} and at the end", folder.string(),
                                      duration(args.run.save_every_minutes * 60)));
   fmt::print("{} iterations of {} critic steps and a generator step, batch {}{}\n", args.training.iterations,
@@ -216,12 +70,11 @@ int run_training(TrainArgs args, const CLI::App& verb) {
   run.save_dir = folder;
   run.resume = args.resume;
   run.notes = {{"options", options_as_note(args)}};
-  run.should_stop = [] { return caught_signal != 0; };
+  run.should_stop = [] { return caught_signal() != 0; };
   run.report = [&](std::size_t iteration, const DvganLosses& losses) {
     bar.update(iteration, {{"wasserstein", losses.wasserstein}, {"penalty", losses.penalty}});
   };
-  std::signal(SIGINT, catch_signal);
-  std::signal(SIGTERM, catch_signal);
+  catch_signals();
   const RunResult result = train(model, data, args.training, run);
   bar.finish();
   fmt::print("{} after {} of {} iterations; saved in {}\n", result.stopped ? "stopped" : "finished",
@@ -229,7 +82,7 @@ int run_training(TrainArgs args, const CLI::App& verb) {
   if (result.stopped) fmt::print("continue: motiongan train dvgan --resume --save {}\n", folder.string());
   fmt::print("generate: motiongan generate {} --text \"{}\"\n", folder.string(),
              data.train.front().captions.front());
-  return caught_signal != 0 ? 128 + caught_signal : 0;
+  return caught_signal() != 0 ? 128 + caught_signal() : 0;
 }
 
 }  // namespace
@@ -267,6 +120,9 @@ void add_train(CLI::App& app, Job& job) {
   option("--rate", a.data.rate, "frames per second")->group("Data");
   verb->add_flag("--root-position,!--no-root-position", a.data.root_position,
                  "learn where the root is, not only how it turns [on]")
+      ->group("Data");
+  verb->add_flag("--align-heading,!--no-align-heading", a.data.align_heading,
+                 "turn each clip so that it starts facing the same way [on]")
       ->group("Data");
   option("--first-frame", a.first_frame,
          "auto: drop T-poses put before the motion; keep; drop: the first frame")

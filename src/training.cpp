@@ -1,0 +1,152 @@
+// What a training run is made of: its options, its data, and how it is stopped.
+#include "training.hpp"
+
+#include <csignal>
+#include <nlohmann/json.hpp>
+
+#include "motiongan/motion/procedural.hpp"
+
+namespace motiongan::command {
+namespace {
+
+/// Calls f(name, member) for all that is kept, by the name of its option.
+template <class F>
+void each_kept(TrainArgs& a, F&& f) {
+  f("FOLDER", a.folder);
+  f("--captions", a.captions);
+  f("--procedural", a.procedural);
+  f("--frames", a.data.frames);
+  f("--rate", a.data.rate);
+  f("--root-position", a.data.root_position);
+  f("--align-heading", a.data.align_heading);
+  f("--first-frame", a.first_frame);
+  f("--train-share", a.data.train_share);
+  f("--split-seed", a.data.split_seed);
+  f("--hidden", a.model.hidden);
+  f("--taps", a.model.taps);
+  f("--final-cut", a.model.final_cut);
+  f("--seed", a.training.seed);
+  f("--iterations", a.training.iterations);
+  f("--critic-steps", a.training.critic_steps);
+  f("--batch", a.training.batch);
+  f("--lambda", a.training.lambda_gp);
+  f("--learning-rate", a.training.adam.learning_rate);
+  f("--beta1", a.training.adam.beta1);
+  f("--beta2", a.training.adam.beta2);
+  f("--epsilon", a.training.adam.epsilon);
+  f("--validation", a.validation);
+  f("--level-weights", a.level_weights);
+  f("--shift", a.training.input_shift);
+}
+
+volatile std::sig_atomic_t signal_number = 0;
+
+extern "C" void take_signal(int number) {
+  signal_number = number;
+  std::signal(number, SIG_DFL);  // the second one ends the process at once
+}
+
+}  // namespace
+
+std::string options_as_note(TrainArgs& args) {
+  nlohmann::json out;
+  each_kept(args, [&](const char* name, const auto& member) { out[name] = member; });
+  return out.dump();
+}
+
+/// Takes from a run's note what the command line does not give.
+void take_from_note(TrainArgs& args, const CLI::App& verb, const std::string& note, const fs::path& from) {
+  const auto kept = nlohmann::json::parse(note, nullptr, false);
+  require(kept.is_object(), from.string(), ": the options of the run cannot be read");
+  const bool other_data = verb.count("FOLDER") + verb.count("--procedural") > 0;
+  each_kept(args, [&](const std::string& name, auto& member) {
+    const bool names_data =
+        name == "FOLDER" || name == "--procedural" || (name == "--captions" && other_data);
+    if (verb.count(name) > 0 || (names_data && other_data)) return;
+    try {
+      kept.at(name).get_to(member);
+    } catch (const nlohmann::json::exception& error) {
+      throw Error(from.string(), ": the run's option ", name, " cannot be read: ", error.what());
+    }
+  });
+}
+
+void fill_in_choices(TrainArgs& a) {
+  a.data.captions = a.captions;
+  a.data.first_frame = a.first_frame == "keep"   ? motion::FirstFrame::keep
+                       : a.first_frame == "drop" ? motion::FirstFrame::drop
+                                                 : motion::FirstFrame::automatic;
+  a.training.validation = a.validation == "mod2"    ? Validation::mod2
+                          : a.validation == "final" ? Validation::final
+                                                    : Validation::dense;
+  a.training.level_weights = a.level_weights == "softmax" ? LevelWeights::softmax : LevelWeights::exp;
+  a.model.seed = a.training.seed;
+}
+
+motion::Dataset load_data(const TrainArgs& args) {
+  if (args.procedural == 0) {
+    fmt::print("reading {}\n", shown(args.folder));
+    return motion::Dataset::from_bvh(args.folder, args.data);
+  }
+  // A clip holds a window and a half; its rate is a multiple of the model's, so nothing need be resampled.
+  motion::ProceduralOptions options;
+  options.clips = args.procedural;
+  options.seconds = std::max(10.0, 1.5 * static_cast<double>(args.data.frames) / args.data.rate);
+  options.rate = args.data.rate * std::max(1.0, std::ceil(30 / args.data.rate));
+  fmt::print("computing {} of built-in motion\n", counted(options.clips, "clip"));
+  return motion::Dataset::from_motions(motion::procedural_motions(options), args.data);
+}
+
+void print_data(const motion::Dataset& data, const TrainArgs& args) {
+  const motion::MotionFormat& format = data.format;
+  const double window = static_cast<double>(format.frames) / format.rate;
+  const auto windows = [&](const std::vector<motion::DatasetClip>& clips) {
+    std::size_t n = 0;
+    for (const motion::DatasetClip& clip : clips) n += data.starts(clip);
+    return n;
+  };
+  std::string clips = fmt::format("{} to train on, {} kept for testing", data.train.size(), data.test.size());
+  if (!data.skipped.empty())
+    clips += fmt::format("; {} left out, shorter than {}", data.skipped.size(), duration(window));
+  print_fact("clips", clips);
+  print_fact("windows", fmt::format("{} to train on, of {} frames at {} per second ({})", windows(data.train),
+                                    format.frames, brief(format.rate), duration(window)));
+  const std::size_t used = data.train.size() + data.test.size();
+  if (args.procedural > 0)
+    print_fact("captions", "those of the built-in motion");
+  else if (args.captions.empty())
+    print_fact("captions", "made from the names of the files (no captions.tsv in the folder, no --captions)");
+  else
+    print_fact("captions",
+               fmt::format("from {}{}", shown(args.captions),
+                           data.named == 0 ? std::string()
+                                           : fmt::format("; {} of {} are not in it and are called by "
+                                                         "the names of their files",
+                                                         data.named, counted(used, "clip"))));
+  print_fact("words", fmt::format("{} in the training captions", format.vocabulary.size() - 1));
+  print_fact("skeleton",
+             fmt::format("{}, root {}; {} of a pose change{}", counted(format.skeleton().size(), "joint"),
+                         format.skeleton().joints[format.layout.root()].name, counted(format.dof(), "number"),
+                         format.layout.root_position() ? ", the root's position among them" : ""));
+  if (data.dropped_frames > 0)
+    print_fact("first frame",
+               fmt::format("{} at the start of clips left out{}", counted(data.dropped_frames, "frame"),
+                           args.first_frame == "auto" ? " (a T-pose before the motion)" : ""));
+}
+
+void print_model(Dvgan& model) {
+  const double millions = 1e-6 * static_cast<double>(parameter_count(named_parameters(model.generator())));
+  print_fact("generator", fmt::format("{} million parameters (width {}, {} taps{})", brief(millions, 3),
+                                      model.options().hidden, model.options().taps,
+                                      model.options().final_cut ? ", final cut" : ""));
+  print_fact("device", describe(model.context().device()));
+}
+
+void catch_signals() {
+  std::signal(SIGINT, take_signal);
+  std::signal(SIGTERM, take_signal);
+}
+
+int caught_signal() { return signal_number; }
+
+}  // namespace motiongan::command

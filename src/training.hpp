@@ -1,0 +1,40 @@
+// A training run as the command keeps it: what train and demo share.
+#pragma once
+#include "command.hpp"
+#include "motiongan/train/train.hpp"
+
+namespace motiongan::command {
+
+struct TrainArgs {
+  // What a run is. Kept in its checkpoint, so that --resume needs none of it.
+  std::string folder, captions;
+  std::size_t procedural = 0;  // clips of built-in motion; 0: the folder's
+  motion::DatasetOptions data;
+  std::string first_frame = "auto", validation = "dense", level_weights = "exp";
+  DvganOptions model;
+  DvganTrainOptions training;
+  // What only this start of it is.
+  std::string save;
+  bool resume = false;
+  RunOptions run;
+};
+
+/// What is kept of the options, for a note in the checkpoint.
+std::string options_as_note(TrainArgs& args);
+
+/// Takes from a run's note what the command line of `verb` does not give; `from` is the checkpoint.
+void take_from_note(TrainArgs& args, const CLI::App& verb, const std::string& note, const fs::path& from);
+
+/// Puts the choices that are given as words, and what follows from other options, where the library has them.
+void fill_in_choices(TrainArgs& args);
+
+motion::Dataset load_data(const TrainArgs& args);
+void print_data(const motion::Dataset& data, const TrainArgs& args);
+void print_model(Dvgan& model);
+
+/// From here on Ctrl-C (and SIGTERM) asks to stop; a second one ends the process.
+void catch_signals();
+/// The signal that asked, or 0.
+int caught_signal();
+
+}  // namespace motiongan::command
