@@ -210,7 +210,7 @@ inline Performance march(Performer p) {
   gait.half_width = p.stance - 1;
   gait.toe_out = p.toe_out;
   gait.behind = 1;
-  gait.lift = 25 * p.size;
+  gait.lift = 23.5 * p.size;
   gait.lift_peak = 0.5;
   gait.push_off = 20;
   gait.swing_heel = 30 + 18 * p.size;

@@ -78,7 +78,7 @@ inline Performance jumping_jack(Performer p) {
   return {[=](double t) {
             BodyTarget b = p.standing(t);
             const double u = fraction(t / period + p.start);
-            const double open = Curve{{0.08, 0}, {0.42, 1}, {0.58, 1}, {0.92, 0}}(u);
+            const double open = Curve{{0.11, 0}, {0.42, 1}, {0.59, 1}, {0.9, 0}}(u);
             const double hop = hump((u - 0.1) / 0.32) + hump((u - 0.58) / 0.32);
             const double dip = cowave(2 * u) * 0.5 + 0.5;  // knees give at u = 0 and 1/2
             b.height = 95 - 7 * dip + 9 * p.size * hop;
