@@ -28,15 +28,6 @@ inline io::SafeTensor host_copy(const Tensor& t) {
                                                    : io::SafeTensor::of(t.shape(), t.to_host<float>());
 }
 
-inline void restore(Tensor& t, const io::SafeTensors& file, const std::string& name,
-                    const std::string& where) {
-  const io::SafeTensor& from = file.at(name);
-  require(from.shape == t.shape(), where, ": \"", name, "\" has shape ", from.shape, ", expected ",
-          t.shape());
-  const std::vector<double> values = from.as<double>();
-  t.write(std::span<const double>(values));
-}
-
 /// A checkpoint's metadata `key`. Error where there is none; `where` names the file.
 inline const std::string& checkpoint_text(const io::SafeTensors& file, const std::string& key,
                                           const std::string& where) {
@@ -100,7 +91,8 @@ inline void save_checkpoint(DvganTrainer& trainer, const std::filesystem::path& 
 }
 
 /// Continues where save_checkpoint() left off, bit for bit as if the run had never stopped. The trainer must
-/// have been made with the same options and data; an Error says what differs.
+/// have been made with the same options and data; an Error says what differs, and leaves the trainer as it
+/// was.
 inline void load_checkpoint(DvganTrainer& trainer, const std::filesystem::path& path) {
   const std::string where = path.string();
   const io::SafeTensors file = io::SafeTensors::read(path);
@@ -120,15 +112,24 @@ inline void load_checkpoint(DvganTrainer& trainer, const std::filesystem::path& 
     require(before.contains(key) && before.at(key) == value, where, ": the run was started with ", key, " = ",
             before.value(key, nlohmann::json()).dump(), ", now ", value.dump(),
             " is asked; give the same, or another folder for a new run");
-  io::load_parameters(named_parameters(trainer.model().generator()), file, where, "generator.");
-  io::load_parameters(named_parameters(trainer.critic()), file, where, "critic.");
-  for (const auto& [name, adam] :
-       {std::pair{"generator", &trainer.generator_adam()}, std::pair{"critic", &trainer.critic_adam()}}) {
-    detail::restore(adam->mean(), file, concat("adam.", name, ".mean"), where);
-    detail::restore(adam->square(), file, concat("adam.", name, ".square"), where);
-    adam->set_steps(detail::checkpoint_number(file, concat("adam.", name, ".steps"), where));
-  }
-  trainer.set_iteration(detail::checkpoint_number(file, "iteration", where));
+  const std::size_t generator_steps = detail::checkpoint_number(file, "adam.generator.steps", where),
+                    critic_steps = detail::checkpoint_number(file, "adam.critic.steps", where),
+                    iteration = detail::checkpoint_number(file, "iteration", where);
+  // All tensors in one list: when one of them is wrong, nothing has changed.
+  Adam &generator = trainer.generator_adam(), &critic = trainer.critic_adam();
+  std::array<Var, 4> moments{Var::constant(generator.mean()), Var::constant(generator.square()),
+                             Var::constant(critic.mean()), Var::constant(critic.square())};
+  ParameterList all;
+  all.add_module("generator", trainer.model().generator());
+  all.add_module("critic", trainer.critic());
+  all.add("adam.generator.mean", moments[0]);
+  all.add("adam.generator.square", moments[1]);
+  all.add("adam.critic.mean", moments[2]);
+  all.add("adam.critic.square", moments[3]);
+  io::load_parameters(all.items(), file, where);
+  generator.set_steps(generator_steps);
+  critic.set_steps(critic_steps);
+  trainer.set_iteration(iteration);
 }
 
 }  // namespace motiongan

@@ -46,6 +46,7 @@ inline RunResult train(Dvgan& model, const motion::Dataset& data, const DvganTra
   using Clock = std::chrono::steady_clock;
   const RunFiles files{run.save_dir};
   const bool keeps = !run.save_dir.empty();
+  require(run.log_every > 0, "log_every is 0; give the number of iterations between two rows of the log");
   DvganTrainer trainer(model, data, options);
   std::optional<CsvLog> log;
   if (keeps) {

@@ -1,0 +1,220 @@
+// Checkpoints: a resumed run equals an unbroken one bit for bit, and a bad file changes nothing.
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <motiongan/train/train.hpp>
+
+#include "../models/small_data.hpp"
+
+using namespace motiongan;
+using namespace motiongan::testing;
+namespace fs = std::filesystem;
+
+namespace {
+
+const DvganTrainOptions small_options{.iterations = 6, .critic_steps = 2, .batch = 3};
+
+/// A folder that goes with its test.
+struct Scratch {
+  fs::path path = fs::temp_directory_path() / "motiongan_checkpoint_test";
+  Scratch() {
+    fs::remove_all(path);
+    fs::create_directories(path);
+  }
+  ~Scratch() { fs::remove_all(path); }
+};
+
+struct Run {
+  Context context;
+  Dvgan model;
+  DvganTrainer trainer;
+  explicit Run(const DvganTrainOptions& options = small_options, std::size_t frames = 8,
+               std::size_t hidden = 8)
+      : model(context, small_data(frames).format, {.hidden = hidden}),
+        trainer(model, small_data(frames), options) {}
+
+  void iterate(std::size_t until) {
+    while (trainer.iteration() < until) trainer.iterate();
+  }
+  /// Everything that training changes.
+  std::vector<std::vector<float>> state() {
+    std::vector<std::vector<float>> all = all_values(model.generator());
+    for (auto& values : all_values(trainer.critic())) all.push_back(std::move(values));
+    for (Adam* adam : {&trainer.generator_adam(), &trainer.critic_adam()}) {
+      all.push_back(adam->mean().to_host());
+      all.push_back(adam->square().to_host());
+      all.push_back({static_cast<float>(adam->steps())});
+    }
+    all.push_back({static_cast<float>(trainer.iteration())});
+    return all;
+  }
+};
+
+/// What load_checkpoint says of a checkpoint after `change`; the trainer must be as it was.
+std::string refusal(const std::function<void(io::SafeTensors&)>& change) {
+  const Scratch scratch;
+  const fs::path path = scratch.path / "checkpoint.safetensors";
+  Run run;
+  run.iterate(1);
+  save_checkpoint(run.trainer, path);
+  io::SafeTensors file = io::SafeTensors::read(path);
+  change(file);
+  file.write(path);
+  run.iterate(2);
+  const auto before = run.state();
+  const std::string text = message_of([&] { load_checkpoint(run.trainer, path); });
+  if (text != "no error") {
+    CHECK(says(text, path.string() + ": "));
+    CHECK(run.state() == before);
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("a run that is stopped and resumed equals an unbroken one, wherever it was stopped") {
+  const Scratch scratch;
+  const fs::path path = scratch.path / "checkpoint.safetensors";
+  Run unbroken;
+  unbroken.iterate(6);
+  const auto expected = unbroken.state();
+  for (const std::vector<std::size_t>& stops : {std::vector<std::size_t>{1}, {3}, {5}, {0, 2, 4}}) {
+    for (std::size_t i = 0; i <= stops.size(); ++i) {
+      Run run;
+      if (i > 0) load_checkpoint(run.trainer, path);
+      run.iterate(i < stops.size() ? stops[i] : 6);
+      save_checkpoint(run.trainer, path);
+      if (i == stops.size()) CHECK(run.state() == expected);
+    }
+  }
+  Run elsewhere;
+  elsewhere.iterate(5);
+  CHECK(elsewhere.state() != expected);
+}
+
+TEST_CASE("saving changes nothing, and saves the same bytes again") {
+  const Scratch scratch;
+  Run run;
+  run.iterate(2);
+  const auto before = run.state();
+  save_checkpoint(run.trainer, scratch.path / "a");
+  CHECK(run.state() == before);
+  Run other;
+  load_checkpoint(other.trainer, scratch.path / "a");
+  CHECK(other.state() == before);
+  save_checkpoint(other.trainer, scratch.path / "b");
+  const io::SafeTensors a = io::SafeTensors::read(scratch.path / "a"),
+                        b = io::SafeTensors::read(scratch.path / "b");
+  CHECK(a.tensors == b.tensors);
+  CHECK(a.metadata == b.metadata);
+  CHECK(a.metadata.at("iteration") == "2");
+  CHECK(a.metadata.at("adam.generator.steps") == "2");
+  CHECK(a.metadata.at("adam.critic.steps") == "4");
+}
+
+TEST_CASE("train() stopped and resumed: files, log and parameters of an unbroken run") {
+  const Scratch scratch;
+  const auto run_once = [](const fs::path& folder, bool resume, std::size_t stop_after) {
+    const Context context;
+    Dvgan model(context, small_data().format, {.hidden = 8});
+    std::size_t count = 0;
+    return train(
+        model, small_data(), small_options,
+        {.save_dir = folder, .resume = resume, .should_stop = [&] { return ++count >= stop_after; }});
+  };
+  const RunResult whole = run_once(scratch.path / "whole", false, 1000);
+  CHECK(whole.iterations == 6);
+  CHECK_FALSE(whole.stopped);
+  const RunResult first = run_once(scratch.path / "parts", false, 2);
+  CHECK(first.iterations == 2);
+  CHECK(first.stopped);
+  CHECK(run_once(scratch.path / "parts", true, 3).iterations == 5);
+  CHECK(run_once(scratch.path / "parts", true, 1000).iterations == 6);
+  for (const char* name : {"generator.safetensors", "critic.safetensors", "checkpoint.safetensors"}) {
+    CAPTURE(name);
+    CHECK(io::SafeTensors::read(scratch.path / "parts" / name).tensors ==
+          io::SafeTensors::read(scratch.path / "whole" / name).tensors);
+  }
+  // The log has each iteration once, with the same losses.
+  const auto rows = [](const fs::path& path) {
+    std::vector<std::string> losses;
+    std::ifstream log(path);
+    for (std::string line; std::getline(log, line);) {
+      std::size_t at = 0;  // behind iteration, seconds, iterations_per_second
+      const std::string iteration = line.substr(0, line.find(','));
+      for (int comma = 0; comma < 3; ++comma) at = line.find(',', at) + 1;
+      losses.push_back(iteration + "," + line.substr(at));
+    }
+    return losses;
+  };
+  CHECK(rows(scratch.path / "whole" / "log.csv").size() == 7);
+  CHECK(rows(scratch.path / "parts" / "log.csv") == rows(scratch.path / "whole" / "log.csv"));
+
+  CHECK(says(message_of([&] { run_once(scratch.path / "whole", false, 1); }), "already holds a run"));
+  CHECK(says(message_of([&] { run_once(scratch.path / "new", true, 1); }), "no such file"));
+}
+
+TEST_CASE("other options or data than at the start are refused by name") {
+  const Scratch scratch;
+  const fs::path path = scratch.path / "checkpoint.safetensors";
+  Run run;
+  run.iterate(1);
+  save_checkpoint(run.trainer, path);
+  const auto refused = [&](const std::function<void(DvganTrainOptions&)>& change) {
+    DvganTrainOptions options = small_options;
+    change(options);
+    Run other(options);
+    return message_of([&] { load_checkpoint(other.trainer, path); });
+  };
+  CHECK(refused([](auto&) {}) == "no error");
+  CHECK(refused([](auto& o) { o.iterations = 100; }) == "no error");  // a longer run is welcome
+  CHECK(says(refused([](auto& o) { o.critic_steps = 5; }), "started with critic_steps = 2, now 5 is asked"));
+  CHECK(says(refused([](auto& o) { o.batch = 4; }), "batch = 3, now 4"));
+  CHECK(says(refused([](auto& o) { o.lambda_gp = 1; }), "lambda_gp = 10"));
+  CHECK(says(refused([](auto& o) { o.adam.learning_rate = 1; }), "learning_rate"));
+  CHECK(says(refused([](auto& o) { o.adam.beta1 = 0; }), "beta1"));
+  CHECK(says(refused([](auto& o) { o.adam.beta2 = 0; }), "beta2"));
+  CHECK(says(refused([](auto& o) { o.adam.epsilon = 1; }), "epsilon"));
+  CHECK(says(refused([](auto& o) { o.input_shift = false; }), "input_shift = true, now false"));
+  CHECK(says(refused([](auto& o) { o.validation = Validation::final; }), "validation"));
+  CHECK(says(refused([](auto& o) { o.level_weights = LevelWeights::softmax; }), "level_weights"));
+  CHECK(says(refused([](auto& o) { o.seed = 9; }), "seed = 1, now 9"));
+  Run longer(small_options, 16), wider(small_options, 8, 16);
+  CHECK(says(message_of([&] { load_checkpoint(longer.trainer, path); }), "\"format\" differs"));
+  CHECK(says(message_of([&] { load_checkpoint(wider.trainer, path); }), "\"options\" differs"));
+}
+
+TEST_CASE("a damaged checkpoint is refused by name and changes nothing") {
+  CHECK(refusal([](auto&) {}) == "no error");
+  CHECK(says(refusal([](auto& f) { f.metadata.clear(); }), "not a checkpoint"));
+  CHECK(says(refusal([](auto& f) { f.metadata["iteration"] = "2.5"; }), "\"iteration\" is \"2.5\""));
+  CHECK(says(refusal([](auto& f) { f.metadata["adam.critic.steps"] = ""; }), "adam.critic.steps"));
+  CHECK(says(refusal([](auto& f) { f.metadata["training"] = "[1, 2"; }), "cannot be read"));
+  // The last tensors that are read: what stands before them is whole.
+  CHECK(says(refusal([](auto& f) { f.tensors.erase("adam.critic.square"); }), "\"adam.critic.square\""));
+  CHECK(says(refusal([](auto& f) { f.tensors.erase("critic.level_weight"); }), "\"critic.level_weight\""));
+  CHECK(says(refusal([](auto& f) { f.tensors["adam.critic.mean"].shape.push_back(1); }), "has shape"));
+  CHECK(says(refusal([](auto& f) {
+               const std::size_t n = f.at("adam.critic.mean").count();
+               f.tensors["adam.critic.mean"] =
+                   io::SafeTensor::of({n}, std::vector<float>(n, std::numeric_limits<float>::infinity()));
+             }),
+             "holds inf"));
+}
+
+TEST_CASE("a checkpoint cut short is refused, and the file is left alone") {
+  const Scratch scratch;
+  const fs::path path = scratch.path / "checkpoint.safetensors";
+  Run run;
+  save_checkpoint(run.trainer, path);
+  const auto size = fs::file_size(path);
+  for (const std::uintmax_t left : {size - 1, size / 2, std::uintmax_t{9}, std::uintmax_t{0}}) {
+    fs::resize_file(path, left);
+    const auto before = run.state();
+    CHECK(says(message_of([&] { load_checkpoint(run.trainer, path); }), path.string() + ": "));
+    CHECK(run.state() == before);
+    CHECK(fs::file_size(path) == left);
+  }
+}
