@@ -33,9 +33,10 @@ struct Validate {
   Validate(Initializer& init, std::size_t k) : motion(init, k, k), text(init, k, k), score(init, k, 1) {}
 
   /// h [T, B, k], h_txt [1, B, k] -> [1, B, 1]. The mean is taken before `score`, which is linear: less to
-  /// multiply.
-  Var operator()(const Var& h, const Var& h_txt) const {
-    const Var hidden = mean_frames(relu_of_sum(motion(h), text(h_txt)));
+  /// multiply. `motion_weight` is motion.weight, or its product with what made h.
+  Var operator()(const Var& h, const Var& h_txt, const Var& motion_weight) const {
+    const Var moved = taps(h, motion_weight, {0}, h.dim(0), false, {.bias = motion.bias});
+    const Var hidden = mean_frames(relu_of_sum(moved, text(h_txt)));
     return score(reshape(hidden, {1, hidden.dim(0), hidden.dim(1)}));
   }
 
@@ -77,11 +78,19 @@ class CnnCritic {
             motion.shape(), ", expected [", options_.frames, ", batch, ", options_.dof, "]");
     const std::size_t batch = motion.dim(1);
     const Var text = reshape(h_txt, {1, batch, options_.hidden});
-    Var h = encode_(motion);
-    std::vector<Var> scores;  // from the finest validated level to the coarsest
+    // The finest level is encode(motion), which is linear and so are the layers that see it: they take the
+    // motion itself by the product of their weights with encode's. A pose has fewer numbers than a hidden
+    // state, and the largest of all activations need not exist. A channel of ones carries encode's bias, also
+    // through the zero padding.
+    Var h = concat_axis({motion, ones(motion.context(), {motion.dim(0), batch, 1})}, 2);
+    const Var encode = with_bias(encode_);  // [k, dof + 1]
+    std::vector<Var> scores;                // from the finest validated level to the coarsest
     for (std::size_t i = levels_ + 1; i-- > 0;) {
-      if (i < levels_) h = halve(residual_[i], h);
-      if (is_validated(i)) scores.push_back(validate_[i](h, text));
+      const bool finest = i == levels_;
+      if (!finest) h = halve(residual_[i], h, i + 1 == levels_ ? encode : Var());
+      if (is_validated(i))
+        scores.push_back(
+            validate_[i](h, text, finest ? after(validate_[i].motion, encode) : validate_[i].motion.weight));
     }
     std::reverse(scores.begin(), scores.end());
     const std::size_t n = scores.size();
@@ -106,13 +115,31 @@ class CnnCritic {
            (options_.validation == Validation::mod2 && level % 2 == 0) || level == 0;
   }
 
-  /// Down(h) + conv2(ReLU(Down(conv1(h)))): half the frames.
-  static Var halve(const Residual& r, const Var& h) {
+  /// Down(h) + conv2(ReLU(Down(conv1(h)))): half the frames. With `encode`, h is what encode is yet to be
+  /// applied to.
+  static Var halve(const Residual& r, const Var& h, const Var& encode) {
     const std::size_t frames = h.dim(0), half = frames / 2;
-    const Var pairs = pair_means(h), down = slice(pairs, 0, half + 1, half);
+    const Var pairs = pair_means(h), weight = encode.empty() ? r.conv1.weight : after(r.conv1, encode);
+    Var down = slice(pairs, 0, half + 1, half);
+    if (!encode.empty()) down = taps(down, reshape(encode, {1, encode.dim(0), encode.dim(1)}), {0}, half);
     const Var inner =
-        r.conv1.weight.dim(0) == 3 ? r.conv1.down(pairs, frames, true) : relu(sum_frames(r.conv1(h), 2, 0.5));
+        weight.dim(0) == 3
+            ? conv_down(pairs, weight, r.conv1.bias, frames, true)
+            : relu(sum_frames(taps(h, weight, r.conv1.offsets(), frames, false, {.bias = r.conv1.bias}), 2,
+                              0.5));
     return r.conv2(inner, {.residual = down});
+  }
+
+  /// Weight and bias of a linear layer side by side, [out, in + 1]: for inputs with a channel of ones.
+  static Var with_bias(const Conv1d& layer) {
+    const std::size_t out = layer.weight.dim(1), in = layer.weight.dim(2);
+    return concat_axis({reshape(layer.weight, {out, in}), reshape(layer.bias, {out, 1})}, 1);
+  }
+
+  /// The weights of conv after a linear layer `first` [k, in]: [taps, out, in].
+  static Var after(const Conv1d& conv, const Var& first) {
+    const std::size_t count = conv.weight.dim(0), out = conv.weight.dim(1), k = conv.weight.dim(2);
+    return reshape(matmul(reshape(conv.weight, {count * out, k}), first), {count, out, first.dim(1)});
   }
 
   CnnCriticOptions options_;

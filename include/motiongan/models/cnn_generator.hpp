@@ -3,6 +3,7 @@
 #include "motiongan/models/plot.hpp"
 #include "motiongan/models/residual.hpp"
 #include "motiongan/nn/text_encoder.hpp"
+#include "motiongan/ops/matmul.hpp"
 
 namespace motiongan {
 
@@ -68,14 +69,12 @@ class CnnGenerator {
             " expected");
     const Var h_txt = text_(text);
     Var h = plot_[0](h_txt, z[0]);
-    for (std::size_t i = 1; i <= levels_; ++i) {
+    if (levels_ == 0) return decode_(h);
+    for (std::size_t i = 1; i < levels_; ++i) {
       const Residual& r = residual_[i - 1];
-      if (options_.final_cut && i == levels_)
-        h = last_level(r, h, h_txt, z[i], cut);
-      else
-        h = r.conv2(relu_of_sum(plot_[i](h_txt, z[i]), r.conv1(h)), {.residual = repeat_frames(h, 2)});
+      h = r.conv2(relu_of_sum(plot_[i](h_txt, z[i]), r.conv1(h)), {.residual = repeat_frames(h, 2)});
     }
-    return decode_(h);
+    return decoded_last_level(h, h_txt, z[levels_], cut);
   }
 
   void list_parameters(ParameterList& list) {
@@ -91,18 +90,35 @@ class CnnGenerator {
   std::size_t reach() const { return options_.taps / 2; }
   std::size_t kept_frames() const { return options_.frames + 2 * reach(); }
 
-  /// The level of 2N frames, computed only where the final cut keeps it: N frames and, before the last
-  /// convolution, its reach. A frame before 0 or from 2N on is zero padding: there the sum under the ReLU is
-  /// made very negative.
-  Var last_level(const Residual& r, const Var& h, const Var& h_txt, const Var& z, const Indices& cut) const {
+  /// decode(h_L) = decode(Up(h) + conv2(x)), computed as Up(decode(h)) + (decode conv2)(x): both are linear,
+  /// and a pose has fewer numbers than a hidden state, so the product of the two weights saves most of the
+  /// finest level's arithmetic. With final cut only the frames that it keeps are computed, and the reach of
+  /// the convolution. A frame before 0 or from 2N on is zero padding: there the sum under the ReLU is made
+  /// very negative.
+  Var decoded_last_level(const Var& h, const Var& h_txt, const Var& z, const Indices& cut) const {
     constexpr double far_below = -1e30;
-    const int first = -static_cast<int>(reach());
-    const Var coarse = shift_frames(repeat_frames(r.conv1(h), 2), cut, kept_frames(),
-                                    {.first = first, .outside = far_below});
-    Offsets offsets;
-    for (std::size_t tap = 0; tap < options_.taps; ++tap) offsets.push_back(static_cast<int>(tap));
-    return taps(relu_of_sum(plot_.back()(h_txt, z), coarse), r.conv2.weight, offsets, options_.frames, false,
-                {.bias = r.conv2.bias, .residual = shift_frames(repeat_frames(h, 2), cut, options_.frames)});
+    const std::size_t frames = 2 * h.dim(0), k = options_.hidden, dof = options_.dof;
+    const Residual& r = residual_.back();
+    const Var plot = plot_.back()(h_txt, z);
+    const Var decode = decode_.weight;  // [1, dof, k]
+    Var inner, residual = repeat_frames(taps(h, decode, {0}, h.dim(0)), 2);
+    Offsets offsets = r.conv2.offsets();
+    if (options_.final_cut) {
+      const int first = -static_cast<int>(reach());
+      inner = relu_of_sum(plot, shift_frames(repeat_frames(r.conv1(h), 2), cut, kept_frames(),
+                                             {.first = first, .outside = far_below}));
+      residual = shift_frames(residual, cut, options_.frames);
+      for (int& offset : offsets) offset -= first;
+    } else {
+      inner = relu_of_sum(plot, r.conv1(h));
+    }
+    const Var weight =
+        matmul(expand(decode, 1, options_.taps, dof * k, 1, {options_.taps, dof, k}), r.conv2.weight);
+    const Var bias =
+        decode_.bias +
+        reshape(matmul(reshape(r.conv2.bias, {1, k}), reshape(decode, {dof, k}), false, true), {dof});
+    return taps(inner, weight, offsets, options_.final_cut ? options_.frames : frames, false,
+                {.bias = bias, .residual = residual});
   }
 
   CnnGeneratorOptions options_;

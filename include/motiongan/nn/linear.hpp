@@ -37,20 +37,21 @@ struct Conv1d {
                 {.bias = bias, .residual = extras.residual, .relu = extras.relu});
   }
 
-  /// Down(conv(x)) for three taps, at half the arithmetic: the mean of two neighbouring outputs is the
-  /// convolution of the means of neighbouring inputs. `pairs` is pair_means(x) of a motion of `frames`
-  /// frames; ReLU follows if asked.
-  Var down(const Var& pairs, std::size_t frames, bool with_relu) const {
-    require(weight.dim(0) == 3, "Conv1d::down: 3 taps expected, ", weight.dim(0), " found");
-    const int half = static_cast<int>(frames / 2);
-    return taps(pairs, weight, {0, half + 1, 1}, frames / 2, false, {.bias = bias, .relu = with_relu});
-  }
-
   void list_parameters(ParameterList& list) {
     list.add("weight", weight, Layout::convolution);
     list.add("bias", bias);
   }
 };
+
+/// Down(conv(x)) for a convolution of three taps, at half the arithmetic: the mean of two neighbouring
+/// outputs is the convolution of the means of neighbouring inputs. `pairs` is pair_means(x) of a motion of
+/// `frames` frames; ReLU follows if asked.
+inline Var conv_down(const Var& pairs, const Var& weight, const Var& bias, std::size_t frames,
+                     bool with_relu) {
+  require(weight.dim(0) == 3, "conv_down: 3 taps expected, ", weight.dim(0), " found");
+  const int half = static_cast<int>(frames / 2);
+  return taps(pairs, weight, {0, half + 1, 1}, frames / 2, false, {.bias = bias, .relu = with_relu});
+}
 
 /// y = x W^T + b on the last axis; `weight` is [out, in] in files.
 struct Linear {
