@@ -30,6 +30,7 @@
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/motion/procedural.hpp"
 #include "motiongan/motion/rotation.hpp"
+#include "motiongan/motion/statistics.hpp"
 //
 #include "motiongan/io/safetensors.hpp"
 #include "motiongan/io/state_dict.hpp"
