@@ -28,7 +28,7 @@ void renew(const fs::path& out) {
     std::string first;
     std::ifstream in(note);
     std::getline(in, first);
-    require(first == marker, out.string(),
+    require(first.starts_with(marker), out.string(),
             " is there already and was not made by the demo; choose another --out");
     for (const auto& entry : fs::directory_iterator(out))
       if (entry.path() != note) fs::remove_all(entry.path());
@@ -109,12 +109,12 @@ void write_motions(const Dvgan& model, const motion::Dataset& data, const fs::pa
     const auto add = [&](const std::string& kind, const motion::Motion& motion, bool in_strip) {
       const motion::Motion smooth = motion::resample(motion, rate);
       motion::write_bvh(out / "bvh" / (name + "_" + kind + ".bvh"), smooth);
-      page.push_back({kind + ": " + caption, smooth});
+      page.push_back({kind.substr(0, kind.find('_')) + ": " + caption, smooth});
       if (in_strip) strip.push_back(page.back());
     };
     add("real", first_window(data, *clip), true);
     const std::vector<motion::Motion> made = model.generate(caption, {.count = 2, .seed = 1});
-    for (std::size_t i = 0; i < made.size(); ++i) add(fmt::format("generated{}", i + 1), made[i], i == 0);
+    for (std::size_t i = 0; i < made.size(); ++i) add(fmt::format("generated_{}", i + 1), made[i], i == 0);
   }
   fmt::print("wrote {}: {} BVH files\n", (out / "bvh").string(), page.size());
   show_page(out / "motions.html", page, "motiongan demo: real and generated motion");

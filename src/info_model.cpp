@@ -1,0 +1,116 @@
+// What safetensors files hold: models, checkpoints, runs and others.
+#include <nlohmann/json.hpp>
+
+#include "info.hpp"
+#include "motiongan/io/motion_format_json.hpp"
+#include "motiongan/io/safetensors.hpp"
+#include "motiongan/train/checkpoint.hpp"
+#include "motiongan/train/train.hpp"
+
+namespace motiongan::command {
+namespace {
+
+std::string millions(std::size_t n) {
+  return n < 1000000 ? std::to_string(n) : fmt::format("{} million", brief(1e-6 * static_cast<double>(n), 3));
+}
+
+std::size_t count_below(const io::SafeTensors& file, std::string_view prefix) {
+  std::size_t n = 0;
+  for (const auto& [name, tensor] : file.tensors)
+    if (name.starts_with(prefix)) n += tensor.count();
+  return n;
+}
+
+/// A JSON object on one line: "batch 64, beta1 0.5, ...".
+std::string options_text(const nlohmann::json& options) {
+  std::string out;
+  for (const auto& [name, value] : options.items()) {
+    std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    if (value.is_boolean()) text = value.get<bool>() ? "on" : "off";
+    if (text.empty()) continue;
+    out += (out.empty() ? "" : ", ") + (name.starts_with("--") ? name.substr(2) : name) + " " + text;
+  }
+  return out;
+}
+
+/// Words on lines of at most 100 characters.
+void print_words(const std::vector<std::string>& words) {
+  std::string line;
+  for (std::size_t i = 1; i <= words.size(); ++i) {
+    if (i == words.size() || line.size() + words[i].size() > 100) {
+      fmt::print("    {}\n", line);
+      line.clear();
+    }
+    if (i < words.size()) line += (line.empty() ? "" : " ") + words[i];
+  }
+}
+
+void print_format(const io::SafeTensors& file, const std::string& where) {
+  const auto text = file.metadata.find("format");
+  require(text != file.metadata.end(), where, ": the model has no motion format in its metadata");
+  const auto json = nlohmann::json::parse(text->second, nullptr, false);
+  require(!json.is_discarded(), where, ": the model's motion format cannot be read");
+  const motion::MotionFormat format = io::motion_format_from_json(json);
+  print_fact("motion", fmt::format("{} frames at {} per second ({})", format.frames, brief(format.rate),
+                                   duration(static_cast<double>(format.frames) / format.rate)));
+  print_fact("skeleton",
+             fmt::format("{}, root {}; {} of a pose change{}", counted(format.skeleton().size(), "joint"),
+                         format.skeleton().joints[format.layout.root()].name, counted(format.dof(), "number"),
+                         format.layout.root_position() ? ", the root's position among them"
+                                                       : "; the root stays where it is"));
+  print_fact("words", fmt::format("{}, and one that stands for all others:", format.vocabulary.size() - 1));
+  print_words(format.vocabulary.words());
+}
+
+void print_other(const io::SafeTensors& file) {
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& [name, tensor] : file.tensors)
+    rows.push_back({name, tensor.dtype, io::shape_text(tensor.shape), std::to_string(tensor.count())});
+  print_table({"tensor", "type", "shape", "numbers"}, rows, "lllr", "  ");
+  if (!file.metadata.empty()) fmt::print("  metadata\n");
+  for (const auto& [key, value] : file.metadata)
+    fmt::print("    {}: {}\n", key, value.size() > 300 ? value.substr(0, 300) + "..." : value);
+}
+
+}  // namespace
+
+void print_tensors(const fs::path& path) {
+  const std::string where = path.string();
+  const io::SafeTensors file = io::SafeTensors::read(path);
+  const auto model = file.metadata.find("motiongan_model");
+  const bool checkpoint = file.metadata.contains("iteration") && model != file.metadata.end();
+  const std::size_t numbers = count_below(file, "");
+  if (model == file.metadata.end()) {
+    fmt::print("{}: {} with {} numbers\n", where, counted(file.tensors.size(), "tensor"), millions(numbers));
+    print_other(file);
+    return;
+  }
+  fmt::print("{}: {}\n", where, checkpoint ? "a checkpoint of a training run" : "a model, " + model->second);
+  if (checkpoint) {
+    print_fact("iteration", file.metadata.at("iteration"));
+    print_fact("generator", millions(count_below(file, "generator.")) + " parameters");
+    print_fact("critic", millions(count_below(file, "critic.")) + " parameters");
+  } else {
+    print_fact("parameters", millions(numbers));
+  }
+  if (const auto at = file.metadata.find("options"); at != file.metadata.end())
+    if (const auto json = nlohmann::json::parse(at->second, nullptr, false); json.is_object())
+      print_fact("model", options_text(json));
+  if (checkpoint) {
+    const RunRecord record = read_run_record(file, where);
+    const auto note = record.notes.find("options");
+    const auto json = nlohmann::json::parse(
+        note != record.notes.end() ? note->second : detail::checkpoint_text(file, "training", where), nullptr,
+        false);
+    if (json.is_object()) print_fact("training", options_text(json));
+  }
+  print_format(file, where);
+}
+
+void print_run(const fs::path& folder) {
+  const RunFiles files{folder};
+  fmt::print("{}: a training run; its log is {}\n", folder.string(), files.log().string());
+  print_tensors(files.checkpoint());
+}
+
+}  // namespace motiongan::command
