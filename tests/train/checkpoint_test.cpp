@@ -218,3 +218,17 @@ TEST_CASE("a checkpoint cut short is refused, and the file is left alone") {
     CHECK(fs::file_size(path) == left);
   }
 }
+
+TEST_CASE("a run that diverged does not overwrite its last checkpoint") {
+  const Scratch scratch;
+  const fs::path path = scratch.path / "checkpoint.safetensors";
+  Run run;
+  run.iterate(1);
+  save_checkpoint(run.trainer, path);
+  const io::SafeTensors before = io::SafeTensors::read(path);
+  Tensor bias = named_parameters(run.trainer.critic()).at(12).value->value();
+  bias.write(
+      std::span<const float>(std::vector<float>(bias.size(), std::numeric_limits<float>::quiet_NaN())));
+  CHECK(says(message_of([&] { save_checkpoint(run.trainer, path); }), "\"critic.encode.bias\" holds"));
+  CHECK(io::SafeTensors::read(path).tensors == before.tensors);
+}

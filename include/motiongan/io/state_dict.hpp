@@ -38,11 +38,16 @@ inline std::vector<double> to_file_order(const NamedParameter& parameter, const 
   return parameter.layout == Layout::convolution ? detail::move_taps(values, tensor.dim(0), true) : values;
 }
 
-/// Adds every parameter to `file` under `prefix` + its name, in the context's precision.
+/// Adds every parameter to `file` under `prefix` + its name, in the context's precision. Throws, naming the
+/// tensor, when one holds a number that is not finite: load_parameters() would refuse it.
 inline void save_parameters(const std::vector<NamedParameter>& parameters, SafeTensors& file,
                             const std::string& prefix = "") {
   for (const NamedParameter& p : parameters) {
     const std::vector<double> values = to_file_order(p, p.value->value());
+    for (double v : values)
+      require(
+          std::isfinite(v), "the parameter \"", prefix + p.name, "\" holds ", v,
+          ": training diverged; nothing is saved, go back to the last file and try a lower learning rate");
     file.tensors[prefix + p.name] =
         p.value->context().precision() == Precision::f64
             ? SafeTensor::of(file_shape(p), values)
