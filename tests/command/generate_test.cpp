@@ -1,0 +1,106 @@
+// New motion through the command, and looking at it.
+#include <doctest/doctest.h>
+
+#include "command.hpp"
+#include "motiongan/motion/bvh.hpp"
+
+using namespace motiongan::motion;
+
+TEST_CASE("generate, view, info and compare, from a model of three iterations") {
+  const TestFolder folder;
+  REQUIRE(call("synth clips --clips 6 --seconds 5").status == 0);
+  REQUIRE(call("train dvgan clips --save run --iterations 3" + tiny).status == 0);
+
+  SUBCASE("files are named by text and sample, read back, and depend on the seed alone") {
+    const Said said = call("generate run --text 'Walk, slowly!' --text jump --count 2 --out a");
+    CHECK(said.status == 0);
+    CHECK(said.has("wrote 4 BVH files of 16 frames at 4 per second"));
+    const Clip clip = read_bvh("a/walk-slowly_000.bvh");
+    CHECK(clip.frames == 16);
+    CHECK(clip.frame_time == doctest::Approx(0.25));
+    CHECK(clip.skeleton == read_bvh("clips/walk_000.bvh").skeleton);
+    REQUIRE(call("generate run --text 'Walk, slowly!' --first-sample 1 --out b").status == 0);
+    CHECK(bytes_of("b/walk-slowly_001.bvh") == bytes_of("a/walk-slowly_001.bvh"));
+    CHECK(bytes_of("a/walk-slowly_000.bvh") != bytes_of("a/walk-slowly_001.bvh"));
+    REQUIRE(call("generate run/generator.safetensors --text jump --seed 2 --out b").status == 0);
+    CHECK(bytes_of("b/jump_000.bvh") != bytes_of("a/jump_000.bvh"));
+    CHECK(bytes_of("a/jump_000.bvh") != bytes_of("a/walk-slowly_000.bvh"));
+  }
+  SUBCASE("--rate, prompts, page and picture; unknown words are named") {
+    write_file("prompts.txt", "walk\n\n  run \r\nwalk.\nfrobnicate wildly\n");
+    const Said said =
+        call("generate run --prompts prompts.txt --rate 60 --out c/d --html e/f.html --png f.png");
+    CHECK(said.status == 0);
+    CHECK_MESSAGE(said.has("\"frobnicate wildly\": the model never saw \"frobnicate\", \"wildly\""),
+                  said.text);
+    const Clip clip = read_bvh("c/d/walk_000.bvh");
+    CHECK(clip.frame_time == doctest::Approx(1.0 / 60));
+    CHECK(clip.frames == 15 * 15 + 1);
+    CHECK(fs::exists("c/d/walk-2_000.bvh"));  // the second text of that name
+    CHECK(fs::exists("c/d/run_000.bvh"));
+    CHECK(bytes_of("e/f.html").find("frobnicate wildly") != std::string::npos);
+    CHECK(bytes_of("f.png").substr(1, 3) == "PNG");
+  }
+  SUBCASE("what cannot be generated is refused") {
+    const auto refused = [](const std::string& arguments, const std::string& why) {
+      const Said said = call("generate " + arguments);
+      CHECK(said.status == 1);
+      CHECK_MESSAGE(said.has(why), said.text);
+    };
+    refused("run", "no text is given");
+    refused("run --text '?!'", "--text \"?!\" has no words");
+    refused("run --text walk --count 0", "--count 0");
+    refused("clips --text walk", "clips holds no generator.safetensors");
+    refused("missing.safetensors --text walk", "missing.safetensors: no such file");
+    refused("run --text walk --out clips/walk_000.bvh/x", "cannot make the folder");
+    refused("run/critic.safetensors --text walk", "not a motiongan model");
+    write_file("mute.txt", "walk\n--\n");
+    refused("run --prompts mute.txt", "mute.txt:2: \"--\" has no words");
+    write_file("cut.safetensors", bytes_of("run/generator.safetensors").substr(0, 20000));
+    refused("cut.safetensors --text walk", "cut.safetensors: ");
+    fs::create_directory("dead.bvh");
+    fs::create_directory("walk_000.bvh");
+    refused("run --text walk", "walk_000.bvh");
+    CHECK(call("generate").status > 1);  // usage
+  }
+  SUBCASE("info tells what everything is") {
+    const Said model = call("info run/generator.safetensors");
+    CHECK(model.status == 0);
+    CHECK(model.has("16 frames at 4 per second (4 s)"));
+    CHECK(model.has("hidden 16"));
+    CHECK(model.has(" walks"));
+    const Said run = call("info run");
+    CHECK(run.status == 0);
+    CHECK(run.has("batch 4"));
+    const Said clip = call("info clips/run_001.bvh");
+    CHECK(clip.has("150 at 30 per second (5 s)"));
+    CHECK(clip.has("no T-pose"));
+    const Said clips = call("info clips");
+    CHECK(clips.has("6 clips: 22 joints (69 channels)"));
+    CHECK(clips.has("captions by number of frames"));
+    CHECK(clips.has("--frames 32 --rate 8        4 s      6"));
+    const Said log = call("info run/log.csv --png log.png");
+    CHECK(log.has("a log of 3 rows"));
+    CHECK(bytes_of("log.png").substr(1, 3) == "PNG");
+    CHECK(call("info run/critic.safetensors").has("level_weight"));
+    CHECK(call("info absent").status == 1);
+  }
+  SUBCASE("view and compare") {
+    const Said said = call("view clips/walk_000.bvh clips/run_001.bvh --rate 15 --png v.png --html v.html");
+    CHECK(said.status == 0);
+    CHECK(said.has("75 frames at 15 per second"));
+    CHECK(bytes_of("v.html").find("walk_000") != std::string::npos);
+    CHECK(bytes_of("v.png").substr(1, 3) == "PNG");
+    CHECK(call("view clips/walk_000.bvh").has("wrote view.html: 1 motion"));
+    CHECK(call("view clips/captions.tsv").status == 1);
+    REQUIRE(call("generate run --text walk --count 3 --out made").status == 0);
+    const Said table = call("compare --generated made --real clips --csv table.csv");
+    CHECK(table.status == 0);
+    CHECK(table.has("at 4 frames per second"));
+    CHECK(table.has("median spread ratio"));
+    CHECK(bytes_of("table.csv").starts_with("joint,"));
+    const Said same = call("compare --generated clips --real clips");
+    CHECK(same.has("median spread ratio                   1.000"));
+    CHECK(call("compare --generated made clips --real clips").has("choose one with --rate"));
+  }
+}

@@ -1,0 +1,110 @@
+// Training through the command: what it says, stopping and resuming, and what it refuses.
+#include <doctest/doctest.h>
+
+#include "command.hpp"
+#include "motiongan/io/safetensors.hpp"
+#include "motiongan/train/csv_log.hpp"
+
+namespace {
+
+std::string checkpoint(const std::string& folder) { return bytes_of(folder + "/checkpoint.safetensors"); }
+
+}  // namespace
+
+TEST_CASE("a run that is stopped and resumed ends bit-equal to one that was not") {
+  const TestFolder folder;
+  REQUIRE(call("synth clips --clips 6 --seconds 5").status == 0);
+  const Said whole = call("train dvgan clips --save whole --iterations 4" + tiny);
+  CHECK(whole.status == 0);
+  CHECK(whole.has("4 to train on, 2 kept for testing"));
+  CHECK(whole.has("from clips/captions.tsv"));
+  CHECK(whole.has("finished after 4 of 4 iterations; saved in whole"));
+  for (const char* file :
+       {"generator.safetensors", "critic.safetensors", "checkpoint.safetensors", "log.csv", "split.tsv"})
+    CHECK(fs::exists(fs::path("whole") / file));
+
+  REQUIRE(call("train dvgan clips --save parts --iterations 2" + tiny).status == 0);
+  CHECK(checkpoint("parts") != checkpoint("whole"));
+  const Said rest =
+      call("train dvgan --resume --save parts --iterations 4");  // the options are in the checkpoint
+  CHECK(rest.status == 0);
+  CHECK(rest.has("resuming after iteration 2"));
+  CHECK(checkpoint("parts") == checkpoint("whole"));
+  CHECK(bytes_of("parts/generator.safetensors") == bytes_of("whole/generator.safetensors"));
+  CHECK(motiongan::read_csv_log("parts/log.csv").column("iteration") == std::vector<double>{1, 2, 3, 4});
+
+  SUBCASE("a finished run says so, and a run is not written over") {
+    CHECK(call("train dvgan --resume --save parts").has("has all its 4 iterations already"));
+    const Said again = call("train dvgan clips --save parts" + tiny);
+    CHECK(again.status == 1);
+    CHECK(again.has("motiongan: parts already holds a run; continue it with --resume"));
+  }
+  SUBCASE("other options are refused when resuming") {
+    const Said batch = call("train dvgan --resume --save parts --iterations 5 --batch 8");
+    CHECK(batch.status == 1);
+    CHECK(batch.has("the run was started with batch = 4, now 8 is asked"));
+    const Said rate = call("train dvgan --resume --save parts --iterations 5 --rate 5");
+    CHECK(rate.status == 1);
+    CHECK(rate.has("started with other data"));
+    CHECK(checkpoint("parts") == checkpoint("whole"));
+  }
+}
+
+TEST_CASE("Ctrl-C saves and says how to go on; a killed run resumes from its last checkpoint") {
+  const TestFolder folder;
+  const std::string train = "train dvgan --procedural 6 --log-every 1" + tiny;
+  const std::string start = std::string("'") + MOTIONGAN_COMMAND + "' " + train;
+  // Runs until some rows of the log are there, then gets the signal.
+  const auto interrupt = [&](const std::string& save, const std::string& more, const std::string& signal) {
+    return shell(start + " --save " + save + more + " & pid=$!; for i in $(seq 600); do " + "[ $(cat " +
+                 save + "/log.csv 2>/dev/null | wc -l) -gt 4 ] && " + "[ -e " + save + "/" +
+                 (signal == "KILL" ? "checkpoint.safetensors" : "log.csv") +
+                 " ] && break; sleep 0.1; done; " + "kill -" + signal + " $pid; wait $pid");
+  };
+  const Said stopped = interrupt("stopped", "", "INT");
+  CHECK(stopped.status == 130);
+  CHECK(stopped.has("of 20000 iterations; saved in stopped"));
+  CHECK(stopped.has("continue: motiongan train dvgan --resume --save stopped"));
+
+  const Said killed = interrupt("killed", " --save-every 0.001", "KILL");
+  CHECK(killed.status == 128 + 9);
+  const std::size_t done =
+      std::stoul(motiongan::io::SafeTensors::read("killed/checkpoint.safetensors").metadata.at("iteration"));
+  const std::string to = std::to_string(done + 2);
+  const Said resumed = call("train dvgan --resume --save killed --iterations " + to);
+  CHECK(resumed.status == 0);
+  CHECK(resumed.has("resuming after iteration " + std::to_string(done)));
+  CHECK(resumed.has("finished after " + to + " of " + to + " iterations"));
+  REQUIRE(call(train + " --save whole --iterations " + to).status == 0);
+  CHECK(checkpoint("killed") == checkpoint("whole"));
+}
+
+TEST_CASE("a training that cannot be is refused before it begins") {
+  const TestFolder folder;
+  REQUIRE(call("synth clips --clips 3 --seconds 5").status == 0);
+  const auto refused = [](const std::string& arguments, const std::string& why) {
+    const Said said = call("train dvgan " + arguments);
+    CHECK(said.status == 1);
+    CHECK_MESSAGE(said.has(why), said.text);
+    CHECK(said.has("motiongan: "));
+  };
+  refused("", "there is nothing to train on");
+  refused("nowhere", "nowhere does not exist");
+  refused("clips --procedural 4", "not both");
+  refused("clips --frames 33 --rate 12", "32");
+  refused("clips --frames 64", "none of 3 clips holds 64 frames at 4 per second");
+  refused("--resume", "--resume needs --save");
+  refused("--resume --save empty", "there is no run to resume in empty");
+  refused("clips --save clips/walk_000.bvh", "cannot make the folder");
+  write_file("bad.tsv", "walk_000\twalk\nrun_001 run\n");
+  refused("clips --captions bad.tsv --frames 16", "bad.tsv:2: found no tab");
+  write_file("mute.tsv", "walk_000\t...\n");
+  refused("clips --captions mute.tsv --frames 16", "mute.tsv:1: clip 'walk_000' has the description '...'");
+  write_file("clips/walk_000.bvh", bytes_of("clips/walk_000.bvh").substr(0, 9000));
+  refused("clips --frames 16", "walk_000.bvh:");
+  fs::create_directory("broken");
+  write_file("broken/checkpoint.safetensors", "not a checkpoint");
+  refused("--resume --save broken", "broken/checkpoint.safetensors");
+  refused("clips --device tpu", "no OpenCL device matches \"tpu\"");
+  CHECK(call("train dvgan clips --validation deep").status > 1);  // usage
+}
