@@ -77,14 +77,21 @@ kernel void scatter_add_rows(global const real* x, uint x0, global const int* in
 }
 
 /// One window of a clip for every sample: out[t, b, c] = poses[row[b] + t*stride, c], less its value in the window's
-/// first frame where relative[c] is set.
+/// first frame where relative[c] is set. Then, where yaw < channels, the channels x and z are turned back by the yaw of
+/// the window's first frame (yaw_scale radians a unit).
 kernel void gather_windows(global const real* poses, uint poses0, global const int* row, global const int* relative,
-                           global real* out, uint out0, uint frames, uint batch, uint channels, uint stride) {
-  const uint item = get_global_id(0);
-  const uint r = item / channels, c = item % channels;
+                           global real* out, uint out0, uint frames, uint batch, uint channels, uint stride, uint x,
+                           uint z, uint yaw, real yaw_scale) {
+  const uint r = get_global_id(0);  // one row of the result
   if (r >= frames * batch) return;
-  const uint t = r / batch, first = (uint)row[r % batch];
-  real v = poses[poses0 + (first + t * stride) * channels + c];
-  if (relative[c]) v -= poses[poses0 + first * channels + c];
-  out[out0 + item] = v;
+  global const real* first = poses + poses0 + (uint)row[r % batch] * channels;
+  global const real* now = first + r / batch * stride * channels;
+  global real* to = out + out0 + r * channels;
+  for (uint c = 0; c < channels; ++c) to[c] = relative[c] ? now[c] - first[c] : now[c];
+  if (yaw < channels) {
+    real cosine;
+    const real sine = sincos(first[yaw] * yaw_scale, &cosine), old_x = to[x], old_z = to[z];
+    to[x] = cosine * old_x - sine * old_z;
+    to[z] = sine * old_x + cosine * old_z;
+  }
 }

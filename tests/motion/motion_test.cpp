@@ -167,25 +167,3 @@ TEST_CASE("a T-pose in front is found and dropped") {
   CHECK(drop_first_frames(dropped, FirstFrame::drop) == 1);
   CHECK(drop_first_frames(dropped, FirstFrame::drop) == 0);
 }
-
-TEST_CASE("align_heading takes the first frame's yaw from the whole motion, and nothing else") {
-  motion::Motion m;
-  m.skeleton.joints = {{"Hips", -1, {}, {}, {}}, {"Spine", 0, {0, 1, 0}, {}, {}}};
-  m.rate = 1;
-  m.frames = 2;
-  const auto about = [](std::size_t axis, double degrees) {
-    return motion::axis_rotation(axis, motion::radians(degrees));
-  };
-  // Walks towards -x, which is where someone turned by -90 degrees faces; then turns by another 30.
-  m.rotations = {motion::multiply(about(1, -90), about(0, 10)), about(2, 5), about(1, -60), about(2, 5)};
-  m.positions = {{1, 2, 3}, {0, 1, 0}, {0, 2, 3}, {0, 1, 0}};
-  motion::align_heading(m, 0);
-  CHECK(motion::angle_between(m.rotation(0, 0), about(0, 10)) < 1e-12);
-  CHECK(motion::angle_between(m.rotation(1, 0), about(1, 30)) < 1e-12);
-  CHECK(motion::angle_between(m.rotation(1, 1), about(2, 5)) < 1e-12);
-  const motion::Vec3 step = motion::subtract(m.position(1, 0), m.position(0, 0));
-  CHECK(step[0] == doctest::Approx(0).epsilon(1e-12));
-  CHECK(step[1] == doctest::Approx(0));
-  CHECK(step[2] == doctest::Approx(1));  // a step of length 1 along its own facing direction, now +z
-  CHECK(m.position(1, 1) == motion::Vec3{0, 1, 0});
-}

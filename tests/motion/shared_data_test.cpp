@@ -123,5 +123,5 @@ TEST_CASE("the CMU clips make the paper's data set") {
   CHECK(set.dropped_frames == 129);  // one T-pose each, two in 07_12
   CHECK(set.named == 0);
   CHECK(set.format.layout.dof() == 96);
-  CHECK(set.format.relative_dims.size() == 2);
+  CHECK(set.format.relative_dims.size() == 3);  // x, z and yaw of the root
 }

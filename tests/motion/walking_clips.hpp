@@ -45,6 +45,7 @@ inline DatasetOptions eight_at(double rate) {
   DatasetOptions o;
   o.frames = 8;
   o.rate = rate;
+  o.root_rotation = RootRotation::expmap;  // heading_test.cpp has the other
   return o;
 }
 

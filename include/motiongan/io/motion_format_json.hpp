@@ -13,13 +13,16 @@
 
 namespace motiongan::io {
 
-/// {"skeleton": HIERARCHY text, "root": joint name, "root_position", "rate", "frames", "mean": [full dof],
-/// "std": [full dof], "relative_dims": [...], "vocabulary": [words]}; every number comes back exactly.
+/// {"skeleton": HIERARCHY text, "root": joint name, "root_position", "root_rotation": "expmap" or "heading",
+/// "rate", "frames", "mean": [full dof], "std": [full dof], "relative_dims": [...], "vocabulary": [words]};
+/// every number comes back exactly.
 inline nlohmann::json to_json(const motion::MotionFormat& format) {
   format.check();
   return {{"skeleton", motion::format_hierarchy(format.skeleton())},
           {"root", format.skeleton().joints[format.layout.root()].name},
           {"root_position", format.layout.root_position()},
+          {"root_rotation",
+           format.layout.root_rotation() == motion::RootRotation::heading ? "heading" : "expmap"},
           {"rate", format.rate},
           {"frames", format.frames},
           {"mean", format.normalizer.mean()},
@@ -74,8 +77,12 @@ inline motion::MotionFormat motion_format_from_json(const nlohmann::json& json) 
   const auto root_name = read<std::string>(json, "root", "a joint's name");
   const int root = skeleton.find(root_name);
   require(root >= 0, "the motion format's root '", root_name, "' is not a joint of its skeleton");
-  format.layout = motion::PoseLayout(std::move(skeleton), read<bool>(json, "root_position", "true or false"),
-                                     static_cast<std::size_t>(root));
+  const auto root_rotation = read<std::string>(json, "root_rotation", "\"expmap\" or \"heading\"");
+  require(root_rotation == "expmap" || root_rotation == "heading", "the motion format's root_rotation is \"",
+          root_rotation, "\", expected \"expmap\" or \"heading\"");
+  format.layout = motion::PoseLayout(
+      std::move(skeleton), read<bool>(json, "root_position", "true or false"), static_cast<std::size_t>(root),
+      root_rotation == "heading" ? motion::RootRotation::heading : motion::RootRotation::expmap);
   format.rate = read<double>(json, "rate", "frames per second");
   format.frames = read<std::size_t>(json, "frames", "a whole number, 1 or more");
   format.normalizer = motion::Normalizer(read<std::vector<double>>(json, "mean", "numbers"),

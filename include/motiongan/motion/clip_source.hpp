@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
+#include "motiongan/motion/dataset_options.hpp"
 #include "motiongan/motion/kinematics.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/motion/pose.hpp"
@@ -80,8 +81,8 @@ inline void in_two_threads(std::size_t count, const std::function<void(std::size
 
 /// The clip at its natural stride (`stride` 0) or at the one given, its root position that of its own
 /// travelling joint (`root` -1) or of the joint given. Only clips that hold a window are encoded.
-inline EncodedClip encode_clip(Motion motion, std::size_t frames, double rate, bool root_position, bool align,
-                               std::size_t stride, int root) {
+inline EncodedClip encode_clip(Motion motion, const DatasetOptions& options, std::size_t stride, int root) {
+  const auto [frames, rate] = std::pair{options.frames, options.rate};
   EncodedClip out;
   check_motion(motion);
   out.source_rate = motion.rate;
@@ -90,11 +91,12 @@ inline EncodedClip encode_clip(Motion motion, std::size_t frames, double rate, b
   out.stride = stride != 0 ? stride : natural_stride(motion.rate, rate);
   out.skeleton = motion.skeleton;
   if (!long_enough(out, frames, rate)) return out;
-  if (align) align_heading(motion, static_cast<std::size_t>(out.root));
   const double target = rate * static_cast<double>(out.stride);
   if (std::abs(motion.rate / target - 1) > 1e-6) motion = resample(motion, target);
   out.frames = motion.frames;
-  out.poses = PoseLayout(out.skeleton, root_position, static_cast<std::size_t>(out.root)).encode(motion);
+  out.poses = PoseLayout(out.skeleton, options.root_position, static_cast<std::size_t>(out.root),
+                         options.root_rotation)
+                  .encode(motion);
   return out;
 }
 

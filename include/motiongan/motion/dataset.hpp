@@ -1,5 +1,6 @@
 // Captioned clips cut into windows for training (SPEC section 6).
 #pragma once
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -10,23 +11,12 @@
 #include "motiongan/core/error.hpp"
 #include "motiongan/motion/captions.hpp"
 #include "motiongan/motion/clip_source.hpp"
-#include "motiongan/motion/first_frame.hpp"
+#include "motiongan/motion/dataset_options.hpp"
 #include "motiongan/motion/labelled_motion.hpp"
 #include "motiongan/motion/motion_format.hpp"
 #include "motiongan/motion/text_file.hpp"
 
 namespace motiongan::motion {
-
-struct DatasetOptions {
-  std::size_t frames = 32;           ///< N, frames of a window
-  double rate = 4.0;                 ///< frames per second of a window
-  std::filesystem::path captions{};  ///< lines of `clip id <TAB> description`; empty: captions from names
-  bool root_position = true;         ///< whether the root's position is part of a pose
-  bool align_heading = true;         ///< turn each clip so that it starts without yaw; the papers do not
-  double train_share = 0.67;         ///< of the clips; the rest is for testing
-  std::uint64_t split_seed = 1;
-  FirstFrame first_frame = FirstFrame::automatic;  ///< for BVH files
-};
 
 /// One clip, normalised, at the data set's common source rate.
 struct DatasetClip {
@@ -46,9 +36,11 @@ struct SkippedClip {
 /// Clips as windows of `frames` poses at `rate`, and all that is needed to turn poses back into motion.
 ///
 /// A window takes every stride-th frame of a clip, from any frame that leaves room for it. Dimensions in
-/// `format.relative_dims` (the root's x and z) are stored as position over deviation and become relative when
-/// a window is drawn: value[start + i * stride] - value[start]. All others are normalised by mean and
-/// deviation over all frames of the training clips.
+/// `format.relative_dims` (the root's x, z and yaw) are stored over their deviation and become relative when
+/// a window is drawn: value[start + i * stride] - value[start]. Where the layout has a yaw, x and z are then
+/// turned back by the yaw of the window's first frame: every window begins at the origin and faces the same
+/// way, wherever and whichever way it was recorded. All other dimensions are normalised by mean and deviation
+/// over all frames of the training clips.
 class Dataset {
  public:
   MotionFormat format;  ///< skeleton of the first clip used, statistics and vocabulary of the training clips
@@ -89,9 +81,17 @@ class Dataset {
             " numbers, found room for ", out.size());
     for (std::size_t i = 0; i < format.frames; ++i)
       for (std::size_t k = 0; k < dof; ++k) out[i * dof + k] = clip.poses[(start + i * stride) * dof + k];
+    const auto turning = format.turning();
+    const double yaw = turning ? clip.poses[start * dof + turning->yaw] * turning->yaw_scale : 0;
     // The first row is needed for all: it becomes zero last.
-    for (std::size_t i = format.frames; i-- > 0;)
+    for (std::size_t i = format.frames; i-- > 0;) {
       for (const std::size_t k : format.relative_dims) out[i * dof + k] -= out[k];
+      if (!turning) continue;
+      float &x = out[i * dof + turning->x], &z = out[i * dof + turning->z];
+      const double cosine = std::cos(yaw), sine = std::sin(yaw), old_x = x, old_z = z;
+      x = static_cast<float>(cosine * old_x - sine * old_z);
+      z = static_cast<float>(sine * old_x + cosine * old_z);
+    }
   }
 
   /// Motion of a window's poses.

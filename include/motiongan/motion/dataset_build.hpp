@@ -36,9 +36,7 @@ struct Used {
 inline std::vector<Used> encode_all(const std::vector<ClipSource>& sources, Dataset& data, int& root) {
   const DatasetOptions& o = data.options;
   std::vector<EncodedClip> clips(sources.size());
-  in_two_threads(sources.size(), [&](std::size_t i) {
-    clips[i] = encode_clip(sources[i].load(), o.frames, o.rate, o.root_position, o.align_heading, 0, -1);
-  });
+  in_two_threads(sources.size(), [&](std::size_t i) { clips[i] = encode_clip(sources[i].load(), o, 0, -1); });
 
   std::size_t longest = 0;
   std::vector<Used> used;
@@ -74,9 +72,10 @@ inline std::vector<Used> encode_all(const std::vector<ClipSource>& sources, Data
   }
   in_two_threads(used.size(), [&](std::size_t i) {
     EncodedClip& clip = used[i].clip;
-    if (clip.stride == data.stride && (clip.root == root || !(o.root_position || o.align_heading))) return;
-    clip = encode_clip(sources[used[i].source].load(), o.frames, o.rate, o.root_position, o.align_heading,
-                       data.stride, root);
+    if (clip.stride == data.stride &&
+        (clip.root == root || (!o.root_position && o.root_rotation == RootRotation::expmap)))
+      return;
+    clip = encode_clip(sources[used[i].source].load(), o, data.stride, root);
   });
   // Resampling rounds a clip's length down to whole frames: it may have lost its only window.
   std::erase_if(used, [&](const Used& u) {
@@ -108,7 +107,7 @@ inline std::vector<std::string> captions_of(const ClipSource& source, const Capt
   return out;
 }
 
-/// Mean and deviation of the training clips; for the root's x and z those of windows.
+/// Mean and deviation of the training clips; for the root's x, z and yaw those of windows.
 inline Normalizer fit_normalizer(const std::vector<Used>& used, const std::vector<bool>& is_train,
                                  const PoseLayout& layout, std::size_t frames, std::size_t stride) {
   const std::size_t dof = layout.dof();
@@ -129,23 +128,31 @@ inline Normalizer fit_normalizer(const std::vector<Used>& used, const std::vecto
   });
   for (double& s : std) s = std::sqrt(s / static_cast<double>(rows));
 
-  if (layout.root_position()) {
-    for (const std::size_t d : {layout.position_dim(), layout.position_dim() + 2}) {
-      double squares = 0, count = 0;
-      for (std::size_t c = 0; c < used.size(); ++c) {
-        if (!is_train[c]) continue;
-        const EncodedClip& clip = used[c].clip;
-        for (std::size_t start = 0; start + (frames - 1) * stride < clip.frames; ++start) {
-          for (std::size_t i = 0; i < frames; ++i) {
-            const double moved = clip.poses[(start + i * stride) * dof + d] - clip.poses[start * dof + d];
-            squares += moved * moved;
-          }
-          count += static_cast<double>(frames);
+  // Dimensions that count from a window's first frame: mean 0, root mean square over all windows. x and z
+  // share theirs where windows are turned, so that a turn stays a turn.
+  const bool turned = layout.root_rotation() == RootRotation::heading;
+  std::vector<std::size_t> relative;
+  if (layout.root_position()) relative = {layout.position_dim(), layout.position_dim() + 2};
+  if (turned) relative.push_back(layout.yaw_dim());
+  for (const std::size_t d : relative) {
+    double squares = 0, count = 0;
+    for (std::size_t c = 0; c < used.size(); ++c) {
+      if (!is_train[c]) continue;
+      const EncodedClip& clip = used[c].clip;
+      for (std::size_t start = 0; start + (frames - 1) * stride < clip.frames; ++start) {
+        for (std::size_t i = 0; i < frames; ++i) {
+          const double moved = clip.poses[(start + i * stride) * dof + d] - clip.poses[start * dof + d];
+          squares += moved * moved;
         }
+        count += static_cast<double>(frames);
       }
-      mean[d] = 0;
-      std[d] = std::sqrt(squares / count);
     }
+    mean[d] = 0;
+    std[d] = std::sqrt(squares / count);
+  }
+  if (turned && layout.root_position()) {
+    double &x = std[layout.position_dim()], &z = std[layout.position_dim() + 2];
+    x = z = std::sqrt((x * x + z * z) / 2);
   }
   return Normalizer(std::move(mean), std::move(std));
 }
@@ -165,8 +172,8 @@ inline Dataset build(const std::vector<ClipSource>& sources, const DatasetOption
   const std::vector<bool> is_train = split_clips(used.size(), options.train_share, options.split_seed);
 
   MotionFormat& format = data.format;
-  format.layout =
-      PoseLayout(used.front().clip.skeleton, options.root_position, static_cast<std::size_t>(root));
+  format.layout = PoseLayout(used.front().clip.skeleton, options.root_position,
+                             static_cast<std::size_t>(root), options.root_rotation);
   for (const Joint& joint : format.skeleton().joints)
     require(is_utf8(joint.name), "clip '", sources[used.front().source].id, "' has a joint called '",
             joint.name, "', which is not UTF-8; a model file cannot hold it: rename the joint");
@@ -174,10 +181,13 @@ inline Dataset build(const std::vector<ClipSource>& sources, const DatasetOption
   format.frames = options.frames;
   format.normalizer = fit_normalizer(used, is_train, format.layout, options.frames, data.stride);
   const auto& kept = format.normalizer.kept();
-  if (options.root_position)
-    for (std::size_t k = 0; k < kept.size(); ++k)
-      if (kept[k] == format.layout.position_dim() || kept[k] == format.layout.position_dim() + 2)
-        format.relative_dims.push_back(k);
+  const PoseLayout& layout = format.layout;
+  for (std::size_t k = 0; k < kept.size(); ++k) {
+    const bool ground =
+        options.root_position && (kept[k] == layout.position_dim() || kept[k] == layout.position_dim() + 2);
+    const bool yaw = options.root_rotation == RootRotation::heading && kept[k] == layout.yaw_dim();
+    if (ground || yaw) format.relative_dims.push_back(k);
+  }
   format.check();
 
   std::vector<std::string> training_captions;

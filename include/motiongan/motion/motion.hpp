@@ -145,19 +145,4 @@ inline Motion slice(const Motion& motion, std::size_t first, std::size_t count) 
   return out;
 }
 
-/// Turns the whole motion about the vertical axis (y) through the origin, so that `root` starts without yaw:
-/// where its first rotation is turn about y after a tilt, the turn is taken from every frame, and the track
-/// turns along. What the motion does stays the same; which way it was recorded in the room no longer matters.
-inline void align_heading(Motion& motion, std::size_t root) {
-  if (motion.frames == 0) return;
-  const Quat first = motion.rotation(0, root);
-  const double norm = std::hypot(first.w, first.y);
-  if (norm < 1e-9) return;  // upside down: no yaw to speak of
-  const Quat turn_back{first.w / norm, 0, -first.y / norm, 0};
-  for (std::size_t f = 0; f < motion.frames; ++f) {
-    motion.rotation(f, root) = multiply(turn_back, motion.rotation(f, root));
-    motion.position(f, root) = rotate(turn_back, motion.position(f, root));
-  }
-}
-
 }  // namespace motiongan::motion

@@ -1,6 +1,8 @@
 // What must be known about motion to use a trained model: everything of a data set but its clips.
 #pragma once
+#include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,8 +24,8 @@ struct MotionFormat {
   std::size_t frames = 0;  ///< N, frames of a window
 
   /// Kept dimensions (indices 0 .. kept dof - 1) that are counted from the first frame of each window: the
-  /// root's x and z (y is up), so that it does not matter where in the room a motion was recorded. Their mean
-  /// is 0 and their deviation is the root mean square over windows.
+  /// root's x, z (y is up) and yaw, so that it does not matter where in the room a motion was recorded. Their
+  /// mean is 0 and their deviation is the root mean square over windows.
   std::vector<std::size_t> relative_dims;
 
   const Skeleton& skeleton() const { return layout.skeleton(); }
@@ -36,6 +38,26 @@ struct MotionFormat {
     std::vector<bool> mask(dof(), false);
     for (const std::size_t k : relative_dims) mask.at(k) = true;
     return mask;
+  }
+
+  /// The kept dimensions that a window's turn concerns; yaw = value * yaw_scale in radians.
+  struct Turning {
+    std::size_t x, z, yaw;
+    double yaw_scale;
+  };
+
+  /// Where windows are turned to face the same way: the layout has a yaw and a position, and all three are
+  /// kept.
+  std::optional<Turning> turning() const {
+    if (layout.root_rotation() != RootRotation::heading || !layout.root_position()) return std::nullopt;
+    const auto& kept = normalizer.kept();
+    const auto place = [&](std::size_t dim) {
+      return static_cast<std::size_t>(std::find(kept.begin(), kept.end(), dim) - kept.begin());
+    };
+    const std::size_t p = layout.position_dim(), y = layout.yaw_dim();
+    const Turning t{place(p), place(p + 2), place(y), normalizer.std()[y]};
+    if (std::max({t.x, t.z, t.yaw}) >= kept.size()) return std::nullopt;
+    return t;
   }
 
   /// The motion of normalised poses [any number of frames, dof()], at `rate`. Relative dimensions count from

@@ -37,6 +37,7 @@ class WindowSampler {
     std::vector<cl_int> relative;
     for (bool is_relative : data.format.relative_mask()) relative.push_back(is_relative);
     relative_ = Indices(context, relative);
+    turning_ = data.format.turning().value_or(motion::MotionFormat::Turning{dof, dof, dof, 0});
   }
 
   /// `size` windows: a clip, one of its captions and a start for each sample, all uniform.
@@ -52,8 +53,9 @@ class WindowSampler {
     }
     const std::size_t dof = poses_.dim(1);
     Batch batch{Tensor(context_, {frames_, size, dof}), Sentences(context_, sentences, vocabulary_)};
-    context_.launch("layout", "gather_windows", Grid::items(frames_ * size * dof), poses_,
-                    Indices(context_, rows), relative_, batch.motion, frames_, size, dof, stride_);
+    context_.launch("layout", "gather_windows", Grid::items(frames_ * size), poses_, Indices(context_, rows),
+                    relative_, batch.motion, frames_, size, dof, stride_, turning_.x, turning_.z,
+                    turning_.yaw, Real{turning_.yaw_scale});
     return batch;
   }
 
@@ -68,6 +70,7 @@ class WindowSampler {
   std::vector<Clip> clips_;
   Tensor poses_;  // [all frames, dof]
   Indices relative_;
+  motion::MotionFormat::Turning turning_{};  // yaw = dof: windows are not turned
 };
 
 }  // namespace motiongan

@@ -1,0 +1,95 @@
+// Yaw and tilt, and windows that begin at the origin and face the same way.
+#include "motiongan/motion/heading.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "motiongan/motion/dataset.hpp"
+
+using namespace motiongan;
+using namespace motiongan::motion;
+
+namespace {
+
+Quat about(std::size_t axis, double angle) { return axis_rotation(axis, angle); }
+
+/// Someone who walks along a curve and leans forward, recorded at any place and heading of the room.
+Motion walk(double heading, const Vec3& place, std::size_t frames = 40) {
+  Motion m;
+  m.skeleton.joints = {{"Hips", -1, {}, {}, {}}, {"Spine", 0, {0, 1, 0}, {}, {}}};
+  m.rate = 10;
+  m.frames = frames;
+  Vec3 at = place;
+  for (std::size_t f = 0; f < frames; ++f) {
+    const double t = 0.1 * static_cast<double>(f), yaw = heading + 0.9 * t;
+    m.rotations.push_back(multiply(about(1, yaw), about(0, 0.2 + 0.1 * std::sin(3 * t))));
+    m.rotations.push_back(about(2, 0.3 * std::cos(2 * t)));
+    m.positions.push_back(at);
+    m.positions.push_back({0, 1, 0});
+    at = add(at, {0.1 * std::sin(yaw), 0.01 * std::cos(t), 0.1 * std::cos(yaw)});
+  }
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("a rotation as tilt, yaw, tilt, and back") {
+  for (double yaw : {-3.0, -1.0, 0.0, 0.5, 3.1})
+    for (double x : {-1.5, 0.0, 0.3})
+      for (double z : {-0.7, 0.0, 2.0}) {
+        const Quat q = multiply(about(1, yaw), quat_from_expmap({x, 0, z}));
+        const Vec3 h = heading_from_quat(q);
+        CHECK(h[0] == doctest::Approx(x).epsilon(1e-12));
+        CHECK(h[1] == doctest::Approx(yaw).epsilon(1e-12));
+        CHECK(h[2] == doctest::Approx(z).epsilon(1e-12));
+        CHECK(angle_between(quat_from_heading(h), q) < 1e-7);
+      }
+  CHECK(angle_between(quat_from_heading(heading_from_quat(about(0, pi))), about(0, pi)) <
+        1e-7);  // upside down
+}
+
+TEST_CASE("the yaw counts whole turns") {
+  Motion m = walk(0, {}, 200);  // 18 radians
+  const PoseLayout layout(m.skeleton, true, 0, RootRotation::heading);
+  CHECK(layout.yaw_dim() == 1);
+  CHECK(layout.name(1) == "Hips.yaw");
+  CHECK(layout.name(2) == "Hips.z");
+  const std::vector<double> poses = layout.encode(m);
+  CHECK(poses[199 * layout.dof() + 1] == doctest::Approx(0.9 * 19.9));
+  const Motion back = layout.decode(poses, m.frames, m.rate);
+  for (std::size_t f = 0; f < m.frames; ++f)
+    for (std::size_t j = 0; j < 2; ++j) CHECK(angle_between(back.rotation(f, j), m.rotation(f, j)) < 1e-7);
+  CHECK_THROWS_WITH_AS(PoseLayout(m.skeleton).yaw_dim(), doctest::Contains("no yaw"), Error);
+}
+
+TEST_CASE("a window is the same wherever and whichever way it was recorded") {
+  const Vec3 there{5, 0, -3};
+  const Dataset data = Dataset::from_motions(
+      {{"a", walk(0, {}), {"walk"}}, {"b", walk(2.5, there), {"walk"}}, {"c", walk(-1, {}), {"walk"}}},
+      {.frames = 8, .rate = 5, .train_share = 1});
+  REQUIRE(data.train.size() >= 2);
+  CHECK(data.stride == 2);
+  CHECK(data.format.relative_dims.size() == 3);
+  const std::size_t dof = data.format.dof();
+  std::vector<float> first(8 * dof), other(8 * dof);
+  for (std::size_t start : {std::size_t{0}, std::size_t{9}, std::size_t{20}}) {
+    data.window(data.train[0], start, first);
+    data.window(data.train[1], start, other);
+    for (std::size_t i = 0; i < first.size(); ++i) CHECK(first[i] == doctest::Approx(other[i]).epsilon(1e-4));
+    // Back as motion it starts at the origin without yaw and does what the recording does, seen from there.
+    const Motion source = walk(0, {}), motion = data.to_motion(first);
+    const Quat turn_back =
+        inverse(quat_from_heading({0, heading_from_quat(source.rotation(start, 0))[1], 0}));
+    for (std::size_t i = 0; i < 8; ++i) {
+      const std::size_t f = start + 2 * i;
+      CHECK(angle_between(motion.rotation(i, 0), multiply(turn_back, source.rotation(f, 0))) < 1e-5);
+      Vec3 moved = subtract(source.position(f, 0), source.position(start, 0));
+      moved[1] = source.position(f, 0)[1];
+      const Vec3 expected = rotate(turn_back, moved);
+      for (std::size_t c = 0; c < 3; ++c)
+        CHECK(motion.position(i, 0)[c] == doctest::Approx(expected[c]).epsilon(1e-5));
+    }
+  }
+}
