@@ -158,7 +158,10 @@ TEST_CASE("windows are a function of seed and step, and are real windows of the 
     for (const motion::DatasetClip& clip : data.train)
       for (std::size_t start = 0; start < data.starts(clip) && !found; ++start) {
         data.window(clip, start, window);
-        found = window == drawn &&
+        bool equal = true;  // to the rounding of the turn, which the device computes in float
+        for (std::size_t i = 0; i < window.size(); ++i)
+          equal = equal && std::abs(window[i] - drawn[i]) < 1e-4f;
+        found = equal &&
                 std::find(clip.sentences.begin(), clip.sentences.end(), sentence) != clip.sentences.end();
       }
     CHECK(found);
