@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstddef>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -79,6 +80,21 @@ inline void print_table(const std::vector<std::string>& head,
 /// One line of a list of facts: the name in a column of its own.
 inline void print_fact(std::string_view name, std::string_view text) {
   fmt::print("  {:<11} {}\n", name, text);
+}
+
+/// Refuses what CLI11 would wrap around: a whole number below 0.
+inline CLI::Validator not_negative() {
+  return {[](std::string& text) {
+            return text.starts_with('-') ? concat("expected 0 or more, not ", text) : std::string();
+          },
+          ""};
+}
+inline CLI::Validator positive() {
+  return {[](std::string& text) {
+            const bool wrong = text.starts_with('-') || std::strtod(text.c_str(), nullptr) == 0;
+            return wrong ? concat("expected a number above 0, not ", text) : std::string();
+          },
+          ""};
 }
 
 /// "gpu", "cpu" or "other".

@@ -71,6 +71,7 @@ void add_compare(CLI::App& app, Job& job) {
       ->check(CLI::Range(1e-3, 1e4))
       ->type_name("HZ");
   verb->add_option("--margin", args->margin, "widen the real range by this share of it at either end")
+      ->check(not_negative())
       ->capture_default_str();
   verb->add_option("--csv", args->csv, "also write the table, a line for each joint")->type_name("FILE");
   verb->callback([&job, args] { job = [args] { return compare_sets(*args); }; });

@@ -78,7 +78,6 @@ void warn_of_unknown_words(const motion::Vocabulary& vocabulary, const std::stri
 
 int generate(const GenerateArgs& args) {
   const std::vector<std::string> texts = all_texts(args);
-  require(args.options.count > 0, "--count 0 leaves nothing to generate; give 1 or more");
   require(args.options.first_sample + args.options.count <= 0xFFFFFFFFu, "--first-sample ",
           args.options.first_sample, " and --count ", args.options.count, " go past sample 4294967295");
   const fs::path file = model_file(args.model);
@@ -134,15 +133,22 @@ void add_generate(CLI::App& app, Job& job) {
       "are\n"
       "replaced. The same model, text, seed and sample give the same motion, whatever --count is.");
   const auto args = std::make_shared<GenerateArgs>();
-  verb->add_option("MODEL", args->model, "model file, or the --save folder of a training")->required();
+  verb->add_option("MODEL", args->model, "model file, or the --save folder of a training")
+      ->required()
+      ->type_name("");
   verb->add_option("--text", args->texts, "what to show; may be given several times")
       ->type_name("TEXT")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   verb->add_option("--prompts", args->prompts, "file with a text on each line")->type_name("FILE");
-  verb->add_option("--count", args->options.count, "motions for each text")->capture_default_str();
-  verb->add_option("--seed", args->options.seed, "another seed gives other motions")->capture_default_str();
+  verb->add_option("--count", args->options.count, "motions for each text")
+      ->check(positive())
+      ->capture_default_str();
+  verb->add_option("--seed", args->options.seed, "another seed gives other motions")
+      ->check(not_negative())
+      ->capture_default_str();
   verb->add_option("--first-sample", args->options.first_sample, "number of the first motion of the seed")
+      ->check(not_negative())
       ->capture_default_str();
   verb->add_option("--rate", args->rate, "frames per second of the files, by interpolation [the model's]")
       ->check(CLI::Range(1e-3, 1e4))

@@ -9,6 +9,17 @@
 namespace motiongan::command {
 namespace {
 
+/// CLI11's help, without the notes on what a negated flag is worth.
+class Help : public CLI::Formatter {
+ public:
+  std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
+    std::string name = CLI::Formatter::make_option_name(option, is_positional);
+    for (const std::string note = "{false}"; name.find(note) != std::string::npos;)
+      name.erase(name.find(note), note.size());
+    return name;
+  }
+};
+
 int run(int argc, char** argv) {
   CLI::App app(
       "motiongan trains GANs on motion clips (BVH) and their captions, and makes new motion for a text.\n"
@@ -17,6 +28,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "motiongan " MOTIONGAN_VERSION);
   app.require_subcommand(1);
   app.fallthrough();
+  app.formatter(std::make_shared<Help>());
   app.get_formatter()->column_width(34);
   app.add_option_function<std::string>(
          "--device",

@@ -43,12 +43,15 @@ void add_synth(CLI::App& app, Job& job) {
   const auto args = std::make_shared<SynthArgs>();
   verb->add_option("DIR", args->folder,
                    "folder to write to; made if missing, files of the same names are replaced")
-      ->required();
+      ->required()
+      ->type_name("");
   verb->add_option("--clips", args->options.clips, "number of clips; the actions take turns")
+      ->check(not_negative())
       ->capture_default_str();
   verb->add_option("--seconds", args->options.seconds, "length of each clip")->capture_default_str();
   verb->add_option("--rate", args->options.rate, "frames per second")->capture_default_str();
   verb->add_option("--seed", args->options.seed, "another seed gives other performers")
+      ->check(not_negative())
       ->capture_default_str();
   verb->callback([&job, args] { job = [args] { return synthesise(*args); }; });
 }

@@ -45,6 +45,7 @@ int run_training(TrainArgs args, const CLI::App& verb) {
     if (!args.captions.empty()) args.captions = fs::absolute(args.captions).lexically_normal().string();
   }
   fill_in_choices(args);
+  levels_of(args.data.frames);  // refuses what is no power of two before anything is read
   if (args.resume && done >= args.training.iterations) {
     fmt::print("{} has all its {} already; --iterations N asks for more\n", folder.string(),
                counted(done, "iteration"));
@@ -101,28 +102,28 @@ void add_train(CLI::App& app, Job& job) {
   const auto option = [&](const char* name, auto& member, const char* text) {
     return verb->add_option(name, member, text)->capture_default_str();
   };
-  const CLI::Range at_least_one(std::size_t{1}, std::size_t{1} << 31);
-  verb->add_option("FOLDER", a.folder, "folder of BVH clips (and folders in it), or one clip");
-  verb->add_option(
-      "--captions", a.captions,
-      "file with a line `clip id <TAB> description` for each caption [FOLDER/captions.tsv if it is there, "
-      "else captions are made from file names]");
+  const CLI::Range below_one(0.0, 0.9999999, "0 .. 1");
+  verb->add_option("FOLDER", a.folder, "folder of BVH clips (and folders in it), or one clip")->type_name("");
+  verb->add_option("--captions", a.captions,
+                   "file of lines `clip id <TAB> description` [FOLDER/captions.tsv, else from file names]")
+      ->type_name("FILE");
   verb->add_option("--procedural", a.procedural,
-                   "instead of FOLDER: train on the built-in motion, CLIPS of it [68]")
+                   "instead of FOLDER: train on so many clips of built-in motion")
       ->expected(0, 1)
       ->default_str("68")
       ->type_name("CLIPS");
-  verb->add_option("--save", a.save, "folder of the run [save/NAME, NAME being the folder's]");
+  verb->add_option("--save", a.save, "folder of the run [save/NAME, NAME being the folder's]")
+      ->type_name("DIR");
   verb->add_flag("--resume", a.resume,
                  "continue the run in --save; its options are those of its first start");
 
-  option("--frames", a.data.frames, "frames of a motion, a power of two")->group("Data");
-  option("--rate", a.data.rate, "frames per second")->group("Data");
+  option("--frames", a.data.frames, "frames of a motion, a power of two")->check(positive())->group("Data");
+  option("--rate", a.data.rate, "frames per second")->check(positive())->group("Data");
   verb->add_flag("--root-position,!--no-root-position", a.data.root_position,
                  "learn where the root is, not only how it turns [on]")
       ->group("Data");
   verb->add_flag("--align-heading,!--no-align-heading", a.data.align_heading,
-                 "turn each clip so that it starts facing the same way [on]")
+                 "turn each motion so that it starts facing the same way [on]")
       ->group("Data");
   option("--first-frame", a.first_frame,
          "auto: drop T-poses put before the motion; keep; drop: the first frame")
@@ -130,9 +131,9 @@ void add_train(CLI::App& app, Job& job) {
       ->group("Data");
   option("--train-share", a.data.train_share, "share of the clips to train on; the rest is for testing")
       ->group("Data");
-  option("--split-seed", a.data.split_seed, "which clips those are")->group("Data");
+  option("--split-seed", a.data.split_seed, "which clips those are")->check(not_negative())->group("Data");
 
-  option("--hidden", a.model.hidden, "width of the networks")->check(at_least_one)->group("Model");
+  option("--hidden", a.model.hidden, "width of the networks")->check(positive())->group("Model");
   option("--taps", a.model.taps, "of the convolutions")->check(CLI::IsMember({3, 5}))->group("Model");
   verb->add_flag("--final-cut,!--no-final-cut", a.model.final_cut, "generate twice the frames and cut [on]")
       ->group("Model");
@@ -143,26 +144,32 @@ void add_train(CLI::App& app, Job& job) {
       ->check(CLI::IsMember({"exp", "softmax"}))
       ->group("Model");
 
-  option("--iterations", a.training.iterations, "how long to train")->check(at_least_one)->group("Training");
+  option("--iterations", a.training.iterations, "how long to train")->check(positive())->group("Training");
   option("--critic-steps", a.training.critic_steps, "in each iteration")
-      ->check(at_least_one)
+      ->check(positive())
       ->group("Training");
-  option("--batch", a.training.batch, "motions in a step")->check(at_least_one)->group("Training");
-  option("--lambda", a.training.lambda_gp, "weight of the gradient penalty")->group("Training");
-  option("--learning-rate", a.training.adam.learning_rate, "Adam's, of both networks")->group("Training");
-  option("--beta1", a.training.adam.beta1, "Adam's")->group("Training");
-  option("--beta2", a.training.adam.beta2, "Adam's")->group("Training");
-  option("--epsilon", a.training.adam.epsilon, "Adam's")->group("Training");
+  option("--batch", a.training.batch, "motions in a step")->check(positive())->group("Training");
+  option("--lambda", a.training.lambda_gp, "weight of the gradient penalty")
+      ->check(not_negative())
+      ->group("Training");
+  option("--learning-rate", a.training.adam.learning_rate, "Adam's, of both networks")
+      ->check(positive())
+      ->group("Training");
+  option("--beta1", a.training.adam.beta1, "Adam's")->check(below_one)->group("Training");
+  option("--beta2", a.training.adam.beta2, "Adam's")->check(below_one)->group("Training");
+  option("--epsilon", a.training.adam.epsilon, "Adam's")->check(not_negative())->group("Training");
   verb->add_flag("--shift,!--no-shift", a.training.input_shift,
                  "shift motions in time before the critic [on]")
       ->group("Training");
-  option("--seed", a.training.seed, "of first weights, batches and noise")->group("Training");
+  option("--seed", a.training.seed, "of first weights, batches and noise")
+      ->check(not_negative())
+      ->group("Training");
 
   option("--minutes", a.run.max_minutes, "stop (and save) after that long; 0: no limit")->group("Run");
   option("--save-every", a.run.save_every_minutes, "minutes between two checkpoints; 0: only at the end")
       ->group("Run");
   option("--log-every", a.run.log_every, "iterations between two rows of log.csv")
-      ->check(at_least_one)
+      ->check(positive())
       ->group("Run");
   verb->callback([&job, args, verb] {
     if (verb->count("--procedural") > 0 && verb->get_option("--procedural")->results().front().empty())

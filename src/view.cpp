@@ -38,11 +38,14 @@ int view_clips(ViewArgs args) {
 void add_view(CLI::App& app, Job& job) {
   CLI::App* verb = app.add_subcommand("view", "Show BVH clips side by side as stick figures");
   const auto args = std::make_shared<ViewArgs>();
-  verb->add_option("FILES", args->files, "BVH files, or folders of them")->required();
+  verb->add_option("FILES", args->files, "BVH files, or folders of them")->required()->type_name("");
   verb->add_option("--html", args->html,
-                   "page to write [view.html, unless --png is given]; replaced if there");
-  verb->add_option("--png", args->png, "picture to write: a row of poses for each clip; replaced if there");
+                   "page to write [view.html, unless --png is given]; replaced if there")
+      ->type_name("FILE");
+  verb->add_option("--png", args->png, "picture to write: a row of poses for each clip; replaced if there")
+      ->type_name("FILE");
   verb->add_option("--rate", args->rate, "frames per second to show [each clip's own]")
+      ->type_name("HZ")
       ->check(CLI::Range(1e-3, 1e4));
   verb->callback([&job, args] { job = [args] { return view_clips(*args); }; });
 }

@@ -91,7 +91,7 @@ TEST_CASE("a training that cannot be is refused before it begins") {
   refused("", "there is nothing to train on");
   refused("nowhere", "nowhere does not exist");
   refused("clips --procedural 4", "not both");
-  refused("clips --frames 33 --rate 12", "32");
+  refused("clips --frames 33", "33 was asked; the nearest are 32 and 64");
   refused("clips --frames 64", "none of 3 clips holds 64 frames at 4 per second");
   refused("--resume", "--resume needs --save");
   refused("--resume --save empty", "there is no run to resume in empty");
