@@ -122,8 +122,10 @@ void add_train(CLI::App& app, Job& job) {
   verb->add_flag("--root-position,!--no-root-position", a.data.root_position,
                  "learn where the root is, not only how it turns [on]")
       ->group("Data");
-  verb->add_flag("--align-heading,!--no-align-heading", a.data.align_heading,
-                 "turn each motion so that it starts facing the same way [on]")
+  option("--root-rotation", a.root_rotation,
+         "heading: turn over the ground and tilt, every motion starts facing the same way; expmap: as the "
+         "papers")
+      ->check(CLI::IsMember({"heading", "expmap"}))
       ->group("Data");
   option("--first-frame", a.first_frame,
          "auto: drop T-poses put before the motion; keep; drop: the first frame")

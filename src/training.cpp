@@ -18,7 +18,7 @@ void each_kept(TrainArgs& a, F&& f) {
   f("--frames", a.data.frames);
   f("--rate", a.data.rate);
   f("--root-position", a.data.root_position);
-  f("--align-heading", a.data.align_heading);
+  f("--root-rotation", a.root_rotation);
   f("--first-frame", a.first_frame);
   f("--train-share", a.data.train_share);
   f("--split-seed", a.data.split_seed);
@@ -76,6 +76,8 @@ void fill_in_choices(TrainArgs& a) {
   a.data.first_frame = a.first_frame == "keep"   ? motion::FirstFrame::keep
                        : a.first_frame == "drop" ? motion::FirstFrame::drop
                                                  : motion::FirstFrame::automatic;
+  a.data.root_rotation =
+      a.root_rotation == "expmap" ? motion::RootRotation::expmap : motion::RootRotation::heading;
   a.training.validation = a.validation == "mod2"    ? Validation::mod2
                           : a.validation == "final" ? Validation::final
                                                     : Validation::dense;

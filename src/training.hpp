@@ -10,7 +10,7 @@ struct TrainArgs {
   std::string folder, captions;
   std::size_t procedural = 0;  // clips of built-in motion; 0: the folder's
   motion::DatasetOptions data;
-  std::string first_frame = "auto", validation = "dense", level_weights = "exp";
+  std::string root_rotation = "heading", first_frame = "auto", validation = "dense", level_weights = "exp";
   DvganOptions model;
   DvganTrainOptions training;
   // What only this start of it is.
