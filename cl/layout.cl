@@ -1,16 +1,32 @@
 // Moving rows and frames about. Motion is [frames, batch, channels]; a row is one frame of one sample.
 
-/// out[o*out_stride + r] = x[o*x_stride + r] for r < run, o < outer (added to what is there if `accumulate`).
+/// out[o*out_stride + r] = x[o*x_stride + r] for r < run, o < outer.
 kernel void copy_runs(global const real* x, uint x0, uint x_stride, global real* out, uint out0, uint out_stride,
-                      uint outer, uint run, uint accumulate) {
+                      uint outer, uint run) {
   const uint columns = (run + VW - 1) / VW, item = get_global_id(0);
   const uint o = item / columns, r = item % columns * VW;
   if (o >= outer) return;
   const uint left = run - r;
-  global real* to = out + out0 + o * out_stride + r;
-  realv v = load_some(x + x0 + o * x_stride + r, left);
-  if (accumulate) v += load_some(to, left);
-  store_some(v, to, left);
+  store_some(load_some(x + x0 + o * x_stride + r, left), out + out0 + o * out_stride + r, left);
+}
+
+/// out[o, r] = x[o, r - before] where that is one of x's `run` numbers, else 0; r < out_run.
+kernel void pad_runs(global const real* x, uint x0, global real* out, uint out0, uint outer, uint run, uint out_run,
+                     uint before) {
+  const uint columns = (out_run + VW - 1) / VW, item = get_global_id(0);
+  const uint o = item / columns, r = item % columns * VW;
+  if (o >= outer) return;
+  const uint left = out_run - r;
+  realv v = 0;
+  if (r >= before && r + VW <= before + run) {
+    v = LOAD_VECTOR(x + x0 + o * run + r - before);
+  } else if (r + VW > before && r < before + run) {
+    real lanes[VW];
+    for (uint j = 0; j < VW; ++j)
+      lanes[j] = r + j >= before && r + j < before + run ? x[x0 + o * run + r + j - before] : (real)0;
+    v = vload(0, lanes);
+  }
+  store_some(v, out + out0 + o * out_run + r, left);
 }
 
 /// out[t, b, :] = x[t + first + sign*offset[b], b, :], or `outside` where that frame does not exist.

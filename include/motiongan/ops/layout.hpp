@@ -28,7 +28,7 @@ inline void copy_runs(const Tensor& x, std::size_t x_first, std::size_t x_stride
   const Context& context = x.context();
   context.launch("layout", "copy_runs", Grid::items(outer * vectors(context, run)),
                  x.view(x_first, {x.size() - x_first}), x_stride,
-                 out.view(out_first, {out.size() - out_first}), out_stride, outer, run, std::size_t{0});
+                 out.view(out_first, {out.size() - out_first}), out_stride, outer, run);
 }
 
 /// Copies all of x to `to`, of the same size, on the device.
@@ -65,9 +65,10 @@ inline Var pad(const Var& x, std::size_t axis, std::size_t before, std::size_t a
   const detail::AxisView view(x.shape(), axis);
   Shape shape = x.shape();
   shape[axis] += before + after;
-  Tensor value = filled(x.context(), shape, 0);
-  detail::copy_runs(x.value(), 0, view.count * view.inner, value, before * view.inner,
-                    shape[axis] * view.inner, view.outer, view.count * view.inner);
+  const std::size_t run = view.count * view.inner, out_run = shape[axis] * view.inner;
+  Tensor value(x.context(), shape);
+  x.context().launch("layout", "pad_runs", Grid::items(view.outer * detail::vectors(x.context(), out_run)),
+                     x.value(), value, view.outer, run, out_run, before * view.inner);
   return record("pad", {x}, std::move(value),
                 [=, count = view.count](const Node&, const Var& g, const Needs&) -> std::vector<Var> {
                   return {slice(g, axis, before, count)};
