@@ -1,4 +1,5 @@
 // What safetensors files hold: models, checkpoints, runs and others.
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "info.hpp"
@@ -21,28 +22,37 @@ std::size_t count_below(const io::SafeTensors& file, std::string_view prefix) {
   return n;
 }
 
-/// A JSON object on one line: "batch 64, beta1 0.5, ...".
-std::string options_text(const nlohmann::json& options) {
-  std::string out;
-  for (const auto& [name, value] : options.items()) {
-    std::string text = value.is_string() ? value.get<std::string>() : value.dump();
-    if (value.is_boolean()) text = value.get<bool>() ? "on" : "off";
-    if (text.empty()) continue;
-    out += (out.empty() ? "" : ", ") + (name.starts_with("--") ? name.substr(2) : name) + " " + text;
+/// Prints texts with `gap` between them, on lines of at most 100 characters below the fact's name.
+void print_wrapped(std::string_view name, const std::vector<std::string>& texts, std::string_view gap) {
+  std::string line;
+  const auto flush = [&] {
+    print_fact(name, line);
+    name = "";
+    line.clear();
+  };
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    const std::string text = texts[i] + std::string(i + 1 < texts.size() ? gap : "");
+    if (!line.empty() && line.size() + text.size() > 100) flush();
+    line += text;
   }
-  return out;
+  if (!line.empty()) flush();
 }
 
-/// Words on lines of at most 100 characters.
-void print_words(const std::vector<std::string>& words) {
-  std::string line;
-  for (std::size_t i = 1; i <= words.size(); ++i) {
-    if (i == words.size() || line.size() + words[i].size() > 100) {
-      fmt::print("    {}\n", line);
-      line.clear();
-    }
-    if (i < words.size()) line += (line.empty() ? "" : " ") + words[i];
+/// The options of a run, as the command or the library writes them into its files.
+void print_options(std::string_view fact, const std::string& json) {
+  const auto options = nlohmann::json::parse(json, nullptr, false);
+  if (!options.is_object()) return;
+  std::vector<std::string> texts;
+  for (const auto& [key, value] : options.items()) {
+    std::string name = key.starts_with("--") ? key.substr(2) : key;
+    std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    if (value.is_boolean()) text = value.get<bool>() ? "on" : "off";
+    if (text.empty() || (name == "procedural" && text == "0")) continue;
+    if (name == "FOLDER") name = "folder";
+    std::replace(name.begin(), name.end(), '_', '-');
+    texts.push_back(name + " " + text);
   }
+  print_wrapped(fact, texts, ", ");
 }
 
 void print_format(const io::SafeTensors& file, const std::string& where) {
@@ -58,8 +68,10 @@ void print_format(const io::SafeTensors& file, const std::string& where) {
                          format.skeleton().joints[format.layout.root()].name, counted(format.dof(), "number"),
                          format.layout.root_position() ? ", the root's position among them"
                                                        : "; the root stays where it is"));
-  print_fact("words", fmt::format("{}, and one that stands for all others:", format.vocabulary.size() - 1));
-  print_words(format.vocabulary.words());
+  print_fact("words", fmt::format("{}, and {} for all others:", format.vocabulary.size() - 1,
+                                  motion::Vocabulary::unknown));
+  const std::vector<std::string>& words = format.vocabulary.words();
+  print_wrapped("", {words.begin() + 1, words.end()}, " ");
 }
 
 void print_other(const io::SafeTensors& file) {
@@ -94,15 +106,12 @@ void print_tensors(const fs::path& path) {
     print_fact("parameters", millions(numbers));
   }
   if (const auto at = file.metadata.find("options"); at != file.metadata.end())
-    if (const auto json = nlohmann::json::parse(at->second, nullptr, false); json.is_object())
-      print_fact("model", options_text(json));
+    print_options("model", at->second);
   if (checkpoint) {
     const RunRecord record = read_run_record(file, where);
     const auto note = record.notes.find("options");
-    const auto json = nlohmann::json::parse(
-        note != record.notes.end() ? note->second : detail::checkpoint_text(file, "training", where), nullptr,
-        false);
-    if (json.is_object()) print_fact("training", options_text(json));
+    print_options("training", note != record.notes.end() ? note->second
+                                                         : detail::checkpoint_text(file, "training", where));
   }
   print_format(file, where);
 }
