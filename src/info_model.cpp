@@ -26,6 +26,7 @@ std::size_t count_below(const io::SafeTensors& file, std::string_view prefix) {
 void print_wrapped(std::string_view name, const std::vector<std::string>& texts, std::string_view gap) {
   std::string line;
   const auto flush = [&] {
+    line.erase(line.find_last_not_of(' ') + 1);
     print_fact(name, line);
     name = "";
     line.clear();
