@@ -108,7 +108,7 @@ void write_motions(const Dvgan& model, const motion::Dataset& data, const fs::pa
     const std::string name = clip->id.substr(0, clip->id.find('_'));
     const auto add = [&](const std::string& kind, const motion::Motion& motion, bool in_strip) {
       const motion::Motion smooth = motion::resample(motion, rate);
-      motion::write_bvh(out / "bvh" / (name + "_" + kind + ".bvh"), smooth);
+      motion::write_bvh(out / "bvh" / fmt::format("{}_{}.bvh", name, kind), smooth);
       page.push_back({kind.substr(0, kind.find('_')) + ": " + caption, smooth});
       if (in_strip) strip.push_back(page.back());
     };

@@ -22,6 +22,7 @@ int list_devices() {
   } catch (const Error&) {
   }
   std::vector<std::vector<std::string>> rows;
+  rows.reserve(devices.size());
   for (const Device& d : devices)
     rows.push_back({chosen && chosen->id == d.id ? "*" : "", kind_of(d), d.name, d.platform_name, d.version,
                     std::to_string(d.compute_units), gibibytes(d.global_memory),

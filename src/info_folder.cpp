@@ -105,6 +105,7 @@ void print_captions(const std::vector<ClipFacts>& clips) {
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const auto& a, const auto& b) { return a.second.frames > b.second.frames; });
   std::vector<std::vector<std::string>> rows;
+  rows.reserve(sorted.size());
   for (const auto& [caption, g] : sorted)
     rows.push_back({std::to_string(g.frames), duration(g.seconds), std::to_string(g.clips), caption});
   fmt::print("\ncaptions by number of frames\n");

@@ -51,7 +51,7 @@ void print_options(std::string_view fact, const std::string& json) {
     if (text.empty() || (name == "procedural" && text == "0")) continue;
     if (name == "FOLDER") name = "folder";
     std::replace(name.begin(), name.end(), '_', '-');
-    texts.push_back(name + " " + text);
+    texts.push_back(fmt::format("{} {}", name, text));
   }
   print_wrapped(fact, texts, ", ");
 }
