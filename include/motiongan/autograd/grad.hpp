@@ -49,9 +49,10 @@ inline std::vector<Var> grad(const std::vector<Var>& outputs, const std::vector<
     const auto found = leads.find(var.node().get());
     return found != leads.end() && found->second;
   };
-  for (auto node = order.rbegin(); node != order.rend(); ++node)
-    leads[*node] =
-        wanted.contains(*node) || std::any_of((*node)->inputs.begin(), (*node)->inputs.end(), leads_on);
+  std::reverse(order.begin(), order.end());  // oldest first: what leads on is known before what is made of it
+  for (const Node* node : order)
+    leads[node] = wanted.contains(node) || std::any_of(node->inputs.begin(), node->inputs.end(), leads_on);
+  std::reverse(order.begin(), order.end());
 
   std::unordered_map<const Node*, Var> gradients;
   const auto add = [&gradients](const Node* node, const Var& g) {

@@ -2,6 +2,7 @@
 // nothing.
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <map>
 #include <string>
@@ -85,7 +86,7 @@ class BufferPool {
     return (std::max<std::size_t>(bytes, 1) + step - 1) / step * step;
   }
   static std::string mega(std::size_t bytes) {
-    return concat(static_cast<double>(bytes / 1000) / 1000.0, " MB");
+    return concat(std::round(static_cast<double>(bytes) / 1e3) / 1e3, " MB");
   }
 
   cl_context context_;

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -176,7 +177,7 @@ class Context {
   std::string description() const {
     const Device& d = state_->device;
     return concat(d.name, " (", d.platform_name, "), ", d.compute_units, " compute units, ",
-                  static_cast<double>(d.global_memory / 100'000'000) / 10.0, " GB, ",
+                  std::round(static_cast<double>(d.global_memory) / 1e8) / 10, " GB, ",
                   state_->precision == Precision::f64 ? "double" : "float");
   }
 

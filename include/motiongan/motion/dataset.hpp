@@ -64,7 +64,7 @@ class Dataset {
 
   /// The same from motions in memory; `options.first_frame` does not apply. Captions in `options.captions`,
   /// if given, come before those of the motions.
-  static Dataset from_motions(std::vector<LabelledMotion> motions, const DatasetOptions& options = {});
+  static Dataset from_motions(const std::vector<LabelledMotion>& motions, const DatasetOptions& options = {});
 
   /// How many windows the clip holds: a window may start at any frame below this. At least 1.
   std::size_t starts(const DatasetClip& clip) const {

@@ -229,7 +229,8 @@ inline Dataset Dataset::from_bvh(const std::filesystem::path& folder_or_file, co
   return data;
 }
 
-inline Dataset Dataset::from_motions(std::vector<LabelledMotion> motions, const DatasetOptions& options) {
+inline Dataset Dataset::from_motions(const std::vector<LabelledMotion>& motions,
+                                     const DatasetOptions& options) {
   std::vector<ClipSource> sources;
   for (const LabelledMotion& m : motions)
     sources.push_back({m.id, m.id, m.captions, [&m] { return m.motion; }});

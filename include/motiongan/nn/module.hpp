@@ -21,8 +21,8 @@ struct NamedParameter {
   Layout layout = Layout::plain;
 };
 
-/// Makes parameters with random first values: each is named by its place in the model, so a layer more or
-/// less elsewhere does not change the numbers of the others.
+/// Makes parameters with random first values. They are numbered in the order in which they are made, and the
+/// number is part of their randomness' key: equal seeds and options give equal weights.
 class Initializer {
  public:
   Initializer(const Context& context, std::uint64_t seed) : context_(context), seed_(seed) {}

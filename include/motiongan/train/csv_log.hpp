@@ -98,7 +98,7 @@ class CsvLog {
   /// there is continued: its rows up to that iteration stay, later ones (which a resumed run computes again)
   /// and one that was cut off go. Error where the file's header differs; where a new run would write over a
   /// log that has rows; where the file cannot be written.
-  CsvLog(std::filesystem::path path, std::vector<std::string> columns,
+  CsvLog(std::filesystem::path path, const std::vector<std::string>& columns,
          std::optional<std::uint64_t> resume_after = std::nullopt)
       : path_(std::move(path)), columns_(columns.size()) {
     std::string header = "iteration";
