@@ -1,8 +1,9 @@
 /// One Adam step over a whole parameter group (Kingma & Ba 2015; rounding as PyTorch's torch.optim.Adam):
-/// m and v are the running means; rest1 = 1-beta1 and rest2 = 1-beta2 come from the host's double (in float, 1 - 0.999f
-/// is 1e-5 off); step_size = lr/(1-beta1^t), root_correction = sqrt(1-beta2^t).
-kernel void adam(global real* parameter, uint parameter0, global const real* gradient, uint gradient0, global real* mean, uint mean0,
-                 global real* square, uint square0, uint n, real beta1, real beta2, real rest1, real rest2, real step_size, real root_correction, real epsilon) {
+/// m and v are the running means; rest1 = 1-beta1 and rest2 = 1-beta2 come from the host's double (in float,
+/// 1 - 0.999f is 1e-5 off); step_size = lr/(1-beta1^t), root_correction = sqrt(1-beta2^t).
+kernel void adam(global real* parameter, uint parameter0, global const real* gradient, uint gradient0,
+                 global real* mean, uint mean0, global real* square, uint square0, uint n, real beta1,
+                 real beta2, real rest1, real rest2, real step_size, real root_correction, real epsilon) {
   const uint i = (uint)get_global_id(0) * VW;
   if (i >= n) return;
   const uint left = n - i;
@@ -11,6 +12,7 @@ kernel void adam(global real* parameter, uint parameter0, global const real* gra
   const realv v = load_some(square + square0 + i, left) * beta2 + g * g * rest2;
   store_some(m, mean + mean0 + i, left);
   store_some(v, square + square0 + i, left);
-  const realv p = load_some(parameter + parameter0 + i, left) - step_size * m / (sqrt(v) / root_correction + epsilon);
+  const realv p =
+      load_some(parameter + parameter0 + i, left) - step_size * m / (sqrt(v) / root_correction + epsilon);
   store_some(p, parameter + parameter0 + i, left);
 }

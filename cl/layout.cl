@@ -1,8 +1,8 @@
 // Moving rows and frames about. Motion is [frames, batch, channels]; a row is one frame of one sample.
 
 /// out[o*out_stride + r] = x[o*x_stride + r] for r < run, o < outer.
-kernel void copy_runs(global const real* x, uint x0, uint x_stride, global real* out, uint out0, uint out_stride,
-                      uint outer, uint run) {
+kernel void copy_runs(global const real* x, uint x0, uint x_stride, global real* out, uint out0,
+                      uint out_stride, uint outer, uint run) {
   const uint columns = (run + VW - 1) / VW, item = get_global_id(0);
   const uint o = item / columns, r = item % columns * VW;
   if (o >= outer) return;
@@ -11,8 +11,8 @@ kernel void copy_runs(global const real* x, uint x0, uint x_stride, global real*
 }
 
 /// out[o, r] = x[o, r - before] where that is one of x's `run` numbers, else 0; r < out_run.
-kernel void pad_runs(global const real* x, uint x0, global real* out, uint out0, uint outer, uint run, uint out_run,
-                     uint before) {
+kernel void pad_runs(global const real* x, uint x0, global real* out, uint out0, uint outer, uint run,
+                     uint out_run, uint before) {
   const uint columns = (out_run + VW - 1) / VW, item = get_global_id(0);
   const uint o = item / columns, r = item % columns * VW;
   if (o >= outer) return;
@@ -31,7 +31,8 @@ kernel void pad_runs(global const real* x, uint x0, global real* out, uint out0,
 
 /// out[t, b, :] = x[t + first + sign*offset[b], b, :], or `outside` where that frame does not exist.
 kernel void shift_frames(global const real* x, uint x0, global const int* offset, global real* out, uint out0,
-                         uint frames_in, uint frames_out, uint batch, uint channels, int first, int sign, real outside) {
+                         uint frames_in, uint frames_out, uint batch, uint channels, int first, int sign,
+                         real outside) {
   const uint columns = (channels + VW - 1) / VW, item = get_global_id(0);
   const uint row = item / columns, c = item % columns * VW;
   if (row >= frames_out * batch) return;
@@ -42,8 +43,9 @@ kernel void shift_frames(global const real* x, uint x0, global const int* offset
   store_some(v, out + out0 + row * channels + c, left);
 }
 
-/// Means of neighbouring frames, odd pairs first: with pairs = frames/2, out[t] = (x[2t-1] + x[2t])/2 for t = 0..pairs and
-/// out[pairs+1+t] = (x[2t] + x[2t+1])/2 for t < pairs; frames outside are zero. A slab is all rows of one frame.
+/// Means of neighbouring frames, odd pairs first: with pairs = frames/2, out[t] = (x[2t-1] + x[2t])/2 for t =
+/// 0..pairs and out[pairs+1+t] = (x[2t] + x[2t+1])/2 for t < pairs; frames outside are zero. A slab is all
+/// rows of one frame.
 kernel void pair_means(global const real* x, uint x0, global real* out, uint out0, uint frames, uint slab) {
   const uint columns = (slab + VW - 1) / VW, item = get_global_id(0), pairs = frames / 2;
   const uint t = item / columns, i = item % columns * VW;
@@ -57,12 +59,13 @@ kernel void pair_means(global const real* x, uint x0, global real* out, uint out
 }
 
 /// The adjoint of pair_means: out has `frames` frames, g has 2*(frames/2)+1.
-kernel void pair_means_adjoint(global const real* g, uint g0, global real* out, uint out0, uint frames, uint slab) {
+kernel void pair_means_adjoint(global const real* g, uint g0, global real* out, uint out0, uint frames,
+                               uint slab) {
   const uint columns = (slab + VW - 1) / VW, item = get_global_id(0), pairs = frames / 2;
   const uint u = item / columns, i = item % columns * VW;
   if (u >= frames) return;
   const uint left = slab - i, t = u / 2;
-  const uint odd = t + u % 2;                               // the odd pair that u is in: u = 2*odd or 2*odd - 1
+  const uint odd = t + u % 2;  // the odd pair that u is in: u = 2*odd or 2*odd - 1
   realv v = 0;
   if (odd <= pairs) v = load_some(g + g0 + odd * slab + i, left);
   if (t < pairs) v += load_some(g + g0 + (pairs + 1 + t) * slab + i, left);
@@ -70,8 +73,8 @@ kernel void pair_means_adjoint(global const real* g, uint g0, global real* out, 
 }
 
 /// out[r, :] = x[index[r], :]
-kernel void gather_rows(global const real* x, uint x0, global const int* index, global real* out, uint out0, uint rows,
-                        uint channels) {
+kernel void gather_rows(global const real* x, uint x0, global const int* index, global real* out, uint out0,
+                        uint rows, uint channels) {
   const uint columns = (channels + VW - 1) / VW, item = get_global_id(0);
   const uint r = item / columns, c = item % columns * VW;
   if (r >= rows) return;
@@ -79,9 +82,10 @@ kernel void gather_rows(global const real* x, uint x0, global const int* index, 
   store_some(load_some(x + x0 + (uint)index[r] * channels + c, left), out + out0 + r * channels + c, left);
 }
 
-/// out[v, :] = sum of x[r, :] over the rows r with index[r] = v, in ascending order (so that reruns are bit-equal).
-kernel void scatter_add_rows(global const real* x, uint x0, global const int* index, global real* out, uint out0,
-                             uint rows, uint out_rows, uint channels) {
+/// out[v, :] = sum of x[r, :] over the rows r with index[r] = v, in ascending order (so that reruns are
+/// bit-equal).
+kernel void scatter_add_rows(global const real* x, uint x0, global const int* index, global real* out,
+                             uint out0, uint rows, uint out_rows, uint channels) {
   const uint columns = (channels + VW - 1) / VW, item = get_global_id(0);
   const uint v = item / columns, c = item % columns * VW;
   if (v >= out_rows) return;
@@ -92,12 +96,12 @@ kernel void scatter_add_rows(global const real* x, uint x0, global const int* in
   store_some(sum, out + out0 + v * channels + c, left);
 }
 
-/// One window of a clip for every sample: out[t, b, c] = poses[row[b] + t*stride, c], less its value in the window's
-/// first frame where relative[c] is set. Then, where yaw < channels, the channels x and z are turned back by the yaw of
-/// the window's first frame (yaw_scale radians a unit).
-kernel void gather_windows(global const real* poses, uint poses0, global const int* row, global const int* relative,
-                           global real* out, uint out0, uint frames, uint batch, uint channels, uint stride, uint x,
-                           uint z, uint yaw, real yaw_scale) {
+/// One window of a clip for every sample: out[t, b, c] = poses[row[b] + t*stride, c], less its value in the
+/// window's first frame where relative[c] is set. Then, where yaw < channels, the channels x and z are turned
+/// back by the yaw of the window's first frame (yaw_scale radians a unit).
+kernel void gather_windows(global const real* poses, uint poses0, global const int* row,
+                           global const int* relative, global real* out, uint out0, uint frames, uint batch,
+                           uint channels, uint stride, uint x, uint z, uint yaw, real yaw_scale) {
   const uint r = get_global_id(0);  // one row of the result
   if (r >= frames * batch) return;
   global const real* first = poses + poses0 + (uint)row[r % batch] * channels;

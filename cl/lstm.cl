@@ -1,9 +1,11 @@
-// One step of an LSTM layer (PyTorch's: gates i, f, g, o), pointwise part. Gates are [batch, 4k], states [batch, k].
-// A sample whose sentence is over (step >= length) keeps its state; length may be absent (all samples are as long).
+// One step of an LSTM layer (PyTorch's: gates i, f, g, o), pointwise part. Gates are [batch, 4k], states
+// [batch, k]. A sample whose sentence is over (step >= length) keeps its state; length may be absent (all
+// samples are as long).
 
 inline realv sigmoid_v(realv v) { return 1 / (1 + exp(-v)); }
 
-/// In: gates before activation, c of the step before. Out: gates after activation (in place), h and c of this step.
+/// In: gates before activation, c of the step before. Out: gates after activation (in place), h and c of this
+/// step.
 kernel void lstm_cell(global real* gates, uint gates0, global const real* c_before, uint c_before0,
                       global const real* h_before, uint h_before0, global const int* length, uint step,
                       global real* h, uint h0, global real* c, uint c0, uint batch, uint k) {
@@ -28,10 +30,11 @@ kernel void lstm_cell(global real* gates, uint gates0, global const real* c_befo
   store_some(o * tanh(state), h + h0 + at, left);
 }
 
-/// In: activated gates, c of this step and the one before, gradients of h and c of this step from outside (dh, dc) and
-/// from the step after (dh_carry, dc_carry). Out: gradient of the gates before activation; dc_carry for the step before;
-/// dh_carry becomes what passes beside the gates (zero, or all of it for a sample that is over), to which the product of
-/// the gate gradients with the recurrent weights is added afterwards.
+/// In: activated gates, c of this step and the one before, gradients of h and c of this step from outside
+/// (dh, dc) and from the step after (dh_carry, dc_carry). Out: gradient of the gates before activation;
+/// dc_carry for the step before; dh_carry becomes what passes beside the gates (zero, or all of it for a
+/// sample that is over), to which the product of the gate gradients with the recurrent weights is added
+/// afterwards.
 kernel void lstm_cell_backward(global const real* gates, uint gates0, global const real* c, uint c0,
                                global const real* c_before, uint c_before0, global const real* dh, uint dh0,
                                global const real* dc, uint dc0, global const int* length, uint step,

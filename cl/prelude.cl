@@ -1,5 +1,6 @@
-// Put in front of every kernel file. REAL is float or double, VW the device's vector width in REALs (4, 8 or 16; 2 for
-// double on narrow CPUs). Kernels see a tensor as (buffer, index of its first element) and count in 32 bits.
+// Put in front of every kernel file. REAL is float or double, VW the device's vector width in REALs (4, 8 or
+// 16; 2 for double on narrow CPUs). Kernels see a tensor as (buffer, index of its first element) and count in
+// 32 bits.
 #ifdef REAL_IS_DOUBLE
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #define REAL_BITS long
@@ -36,8 +37,8 @@ inline real lane_sum(realv v) {
 #endif
 }
 
-/// The `left` (< VW) numbers at p in the first lanes, zeros behind. Tails go through the same vector code as the rest,
-/// so that a number does not depend on its place in the array.
+/// The `left` (< VW) numbers at p in the first lanes, zeros behind. Tails go through the same vector code as
+/// the rest, so that a number does not depend on its place in the array.
 inline realv load_part(global const real* p, uint left) {
   real lanes[VW];
   for (uint j = 0; j < VW; ++j) lanes[j] = j < left ? p[j] : (real)0;
@@ -64,7 +65,9 @@ typedef realv realv_anywhere __attribute__((aligned(4)));
 #define STORE_VECTOR(v, p) vstore(v, 0, p)
 #endif
 
-inline realv load_some(global const real* p, uint left) { return left >= VW ? LOAD_VECTOR(p) : load_part(p, left); }
+inline realv load_some(global const real* p, uint left) {
+  return left >= VW ? LOAD_VECTOR(p) : load_part(p, left);
+}
 inline void store_some(realv v, global real* p, uint left) {
   if (left >= VW)
     STORE_VECTOR(v, p);

@@ -1,5 +1,6 @@
-// Counter-based randomness: Philox 4x32 with 10 rounds (Salmon et al., "Parallel random numbers: as easy as 1, 2, 3",
-// SC 2011). A number depends on (seed, stream, step, sample, position) alone: a sample is the same in any batch.
+// Counter-based randomness: Philox 4x32 with 10 rounds (Salmon et al., "Parallel random numbers: as easy as
+// 1, 2, 3", SC 2011). A number depends on (seed, stream, step, sample, position) alone: a sample is the same
+// in any batch.
 
 #define LANES 16
 typedef uint16 uintv;
@@ -27,15 +28,19 @@ inline void philox(uintv* counter0, uintv* counter1, uintv* counter2, uintv* cou
 inline floatv unit(uintv bits) { return (convert_float16(bits >> 9) + 0.5f) * 0x1p-23f; }
 
 /// out[t, b, c] ~ N(0, 1), Box-Muller; row t is frame first_frame + t, counted from
-/// frame_of[b] where that is given. One work-item makes 64 channels of one row: block q of 16 lanes takes counter
-/// (c/64*16 + lane, frame, first_sample + b, stream ^ step<<8); its four words become channels c/64*64 + 16*q + lane.
-kernel void random_normal(global real* out, uint out0, uint frames, uint batch, uint channels, uint seed0, uint seed1,
-                          uint stream, uint step, uint first_sample, int first_frame, global const int* frame_of) {
+/// frame_of[b] where that is given. One work-item makes 64 channels of one row: block q of 16 lanes takes
+/// counter (c/64*16 + lane, frame, first_sample + b, stream ^ step<<8); its four words become channels
+/// c/64*64 + 16*q + lane.
+kernel void random_normal(global real* out, uint out0, uint frames, uint batch, uint channels, uint seed0,
+                          uint seed1, uint stream, uint step, uint first_sample, int first_frame,
+                          global const int* frame_of) {
   const uint blocks = (channels + 63) / 64, item = get_global_id(0);
   const uint row = item / blocks, block = item % blocks;
   if (row >= frames * batch) return;
   const uintv lane = (uintv)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-  uintv a = lane + block * 16, b = (uintv)((uint)((int)(row / batch) + first_frame + (frame_of ? frame_of[row % batch] : 0))), c = (uintv)(first_sample + row % batch);
+  uintv a = lane + block * 16,
+        b = (uintv)((uint)((int)(row / batch) + first_frame + (frame_of ? frame_of[row % batch] : 0))),
+        c = (uintv)(first_sample + row % batch);
   uintv d = (uintv)(stream ^ (step << 8));
   philox(&a, &b, &c, &d, seed0, seed1);
   floatv values[4];
@@ -63,7 +68,8 @@ kernel void random_normal(global real* out, uint out0, uint frames, uint batch, 
 }
 
 /// out[i] uniform in (0, 1) by the first word of counter (0, 0, first_sample + i, stream ^ step<<8).
-kernel void random_uniform(global real* out, uint out0, uint n, uint seed0, uint seed1, uint stream, uint step, uint first_sample) {
+kernel void random_uniform(global real* out, uint out0, uint n, uint seed0, uint seed1, uint stream,
+                           uint step, uint first_sample) {
   const uint i = get_global_id(0);
   if (i >= n) return;
   uintv a = 0, b = 0, c = (uintv)(first_sample + i), d = (uintv)(stream ^ (step << 8));
@@ -72,7 +78,8 @@ kernel void random_uniform(global real* out, uint out0, uint n, uint seed0, uint
 }
 
 /// out[i] a whole number in [low, low + count), likewise.
-kernel void random_integers(global int* out, uint n, int low, uint count, uint seed0, uint seed1, uint stream, uint step, uint first_sample) {
+kernel void random_integers(global int* out, uint n, int low, uint count, uint seed0, uint seed1, uint stream,
+                            uint step, uint first_sample) {
   const uint i = get_global_id(0);
   if (i >= n) return;
   uintv a = 0, b = 0, c = (uintv)(first_sample + i), d = (uintv)(stream ^ (step << 8));

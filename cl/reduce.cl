@@ -1,12 +1,13 @@
 // Sums in a fixed order, and their adjoint, the expansion.
 
 /// out[o, s, i] = scale * sum of x[o, j, i] over j in [s*chunk, (s+1)*chunk), in ascending order.
-kernel void sum_middle(global const real* x, uint x0, global real* out, uint out0, uint outer, uint count, uint inner,
-                       uint chunk, real scale) {
+kernel void sum_middle(global const real* x, uint x0, global real* out, uint out0, uint outer, uint count,
+                       uint inner, uint chunk, real scale) {
   const uint columns = (inner + VW - 1) / VW, pieces = (count + chunk - 1) / chunk, item = get_global_id(0);
   const uint row = item / columns, i = item % columns * VW;
   if (row >= outer * pieces) return;
-  const uint o = row / pieces, first = row % pieces * chunk, last = min(first + chunk, count), left = inner - i;
+  const uint o = row / pieces, first = row % pieces * chunk, last = min(first + chunk, count),
+             left = inner - i;
   global const real* p = x + x0 + (o * count + first) * inner + i;
   realv sum = 0;
   if (left >= VW)
@@ -17,7 +18,8 @@ kernel void sum_middle(global const real* x, uint x0, global real* out, uint out
 }
 
 /// out[r] = scale * sum of x[r, 0 .. count-1].
-kernel void sum_rows(global const real* x, uint x0, global real* out, uint out0, uint rows, uint count, real scale) {
+kernel void sum_rows(global const real* x, uint x0, global real* out, uint out0, uint rows, uint count,
+                     real scale) {
   const uint r = get_global_id(0);
   if (r >= rows) return;
   global const real* p = x + x0 + r * count;
@@ -27,8 +29,8 @@ kernel void sum_rows(global const real* x, uint x0, global real* out, uint out0,
 }
 
 /// out[o, j, i] = scale * x[o, i] for j < count.
-kernel void expand(global const real* x, uint x0, global real* out, uint out0, uint outer, uint count, uint inner,
-                   real scale) {
+kernel void expand(global const real* x, uint x0, global real* out, uint out0, uint outer, uint count,
+                   uint inner, real scale) {
   const uint columns = (inner + VW - 1) / VW, item = get_global_id(0);
   const uint row = item / columns, i = item % columns * VW;
   if (row >= outer * count) return;
@@ -37,7 +39,8 @@ kernel void expand(global const real* x, uint x0, global real* out, uint out0, u
 }
 
 /// out[r, j] = scale * x[r]: the expansion whose inner size is 1.
-kernel void expand_rows(global const real* x, uint x0, global real* out, uint out0, uint rows, uint count, real scale) {
+kernel void expand_rows(global const real* x, uint x0, global real* out, uint out0, uint rows, uint count,
+                        real scale) {
   const uint columns = (count + VW - 1) / VW, item = get_global_id(0);
   const uint r = item / columns, j = item % columns * VW;
   if (r < rows) store_some((realv)(scale * x[x0 + r]), out + out0 + r * count + j, count - j);
