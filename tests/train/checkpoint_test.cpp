@@ -114,6 +114,16 @@ TEST_CASE("saving changes nothing, and saves the same bytes again") {
   CHECK(a.metadata.at("adam.critic.steps") == "4");
 }
 
+TEST_CASE("a checkpoint generates as its model does") {
+  const Scratch scratch;
+  Run run;
+  run.iterate(2);
+  save_checkpoint(run.trainer, scratch.path / "a");
+  const Dvgan loaded = Dvgan::load(run.context, scratch.path / "a");
+  const GenerateOptions three{.count = 3, .seed = 5};
+  CHECK(loaded.generate_poses("walk", three) == run.model.generate_poses("walk", three));
+}
+
 TEST_CASE("train() stopped and resumed: files, log and parameters of an unbroken run") {
   const Scratch scratch;
   const auto run_once = [](const fs::path& folder, bool resume, std::size_t stop_after) {

@@ -89,11 +89,14 @@ class Dvgan {
     file.write(path);
   }
 
-  /// A model that save() wrote. Throws, naming the file and what is wrong, for any other.
+  /// A model that save() wrote, or the generator of a run's checkpoint. Throws, naming the file and what is
+  /// wrong, for any other.
   static Dvgan load(const Context& context, const std::filesystem::path& path) {
     const io::SafeTensors file = io::SafeTensors::read(path);
     Dvgan model = from_description(context, file, path.string());
-    io::load_parameters(named_parameters(model.generator_), file, path.string());
+    const bool is_checkpoint = file.tensors.contains("generator.decode.weight");
+    io::load_parameters(named_parameters(model.generator_), file, path.string(),
+                        is_checkpoint ? "generator." : "");
     return model;
   }
 
