@@ -236,13 +236,6 @@ class Context {
              "clEnqueueReadBuffer", ": ", bytes, " bytes");
   }
 
-  /// Device-to-device copy, in queue order.
-  void copy(cl_mem from, std::size_t from_byte, cl_mem to, std::size_t to_byte, std::size_t bytes) const {
-    if (bytes == 0) return;
-    check_cl(clEnqueueCopyBuffer(queue(), from, to, from_byte, to_byte, bytes, 0, nullptr, nullptr),
-             "clEnqueueCopyBuffer", ": ", bytes, " bytes");
-  }
-
  private:
   template <class T>
   static std::string describe(const T& argument) {
