@@ -4,21 +4,12 @@
 #include <cstdlib>
 #include <motiongan/ops/elementwise.hpp>
 
+#include "../support/messages.hpp"
+
 using namespace motiongan;
+using namespace motiongan::testing;
 
 namespace {
-
-template <class Action>
-std::string message_of(const Action& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
-bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 /// An environment variable, set as long as this lives.
 class Setting {

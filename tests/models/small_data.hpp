@@ -4,6 +4,8 @@
 #include <motiongan/motion/dataset.hpp>
 #include <motiongan/motion/procedural.hpp>
 
+#include "../support/messages.hpp"
+
 namespace motiongan::testing {
 
 /// Windows of `frames` frames at 4 Hz from 12 clips of six seconds, with captions of different lengths.
@@ -24,21 +26,6 @@ std::vector<std::vector<float>> all_values(Model& model) {
   std::vector<std::vector<float>> all;
   for (const NamedParameter& p : named_parameters(model)) all.push_back(p.value->value().to_host());
   return all;
-}
-
-/// What an action's Error says.
-template <class Action>
-std::string message_of(const Action& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
-inline bool says(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
 }
 
 }  // namespace motiongan::testing
