@@ -1,0 +1,228 @@
+// A recurrent generator fed with its own output (SPEC 2, RNN generator): all steps as one operation, with a
+// fused value and first derivative and a composed form for higher ones.
+//
+// In step t two LSTM layers of k see what was made before, and their output moves it on:
+//   gates0_t = x_t + [a_{t-1} | h0_{t-1}] W0^T        h0_t, c0_t = cell(gates0_t, c0_{t-1})
+//   gates1_t = b1  + [h0_t | h1_{t-1}] W1^T           h1_t, c1_t = cell(gates1_t, c1_{t-1})
+//   a_t = a_{t-1} + h1_t Wd^T + bd                    (or what is given, for the first frames)
+// The rows of a step are kept as [a_t | h0_t | h1_{t-1}], so that what either layer sees is one piece of a
+// row and each takes one matrix product.
+#pragma once
+#include "motiongan/ops/composed.hpp"
+#include "motiongan/ops/matmul.hpp"
+
+namespace motiongan {
+
+/// The weights of a rollout; M numbers a pose, k hidden ones.
+struct RolloutWeights {
+  Var layer0;     ///< W0 [4k, M + k]: what pose and state do to the first layer's gates
+  Var layer1;     ///< W1 [4k, 2k]: what both states do to the second layer's
+  Var bias1;      ///< b1 [4k]
+  Var diff;       ///< Wd [M, k]
+  Var diff_bias;  ///< bd [M]
+};
+
+namespace detail {
+
+/// Sizes and places of a rollout: rows [a_t | h0_t | h1_{t-1}] of all samples, for t = 0 .. N.
+struct RolloutShape {
+  std::size_t frames, batch, dof, k, given;
+  std::size_t width() const { return dof + 2 * k; }
+  std::size_t slab() const { return batch * width(); }
+  std::size_t pose_at(std::size_t t) const { return t * slab(); }
+  std::size_t h0_at(std::size_t t) const { return t * slab() + dof; }
+  /// h1 of step t stands in the rows of step t + 1.
+  std::size_t h1_at(std::size_t t) const { return (t + 1) * slab() + dof + k; }
+  std::size_t state_at(std::size_t t) const { return t * batch * k; }
+  std::size_t gates_at(std::size_t t) const { return (t - 1) * batch * 4 * k; }  // from step 1 on
+  Grid cells(const Context& context) const { return Grid::items(batch * vectors(context, k)); }
+};
+
+/// What the forward pass keeps: rows [N + 1, B, M + 2k], activated gates [N - 1, B, 4k] and cell states
+/// [N, B, k] of both layers.
+struct RolloutTrace {
+  RolloutShape shape;
+  Tensor rows, gates0, gates1, c0, c1;
+};
+
+inline Tensor from(const Tensor& t, std::size_t first) { return t.view(first, {t.size() - first}); }
+
+inline RolloutTrace rollout_forward(const Tensor& given, const Tensor& x_gates, const RolloutWeights& w) {
+  const Context& context = given.context();
+  const std::size_t k = w.diff.dim(1), batch = given.dim(1), frames = x_gates.dim(0) + 1;
+  const RolloutShape s{frames, batch, given.dim(2), k, given.dim(0)};
+  RolloutTrace trace{s,
+                     Tensor(context, {frames + 1, batch, s.width()}),
+                     Tensor(context, {frames - 1, batch, 4 * k}),
+                     Tensor(context, {frames - 1, batch, 4 * k}),
+                     Tensor(context, {frames, batch, k}),
+                     Tensor(context, {frames, batch, k})};
+  const auto clear = [&](const Tensor& t) {
+    context.launch("elementwise", "fill", vector_grid(t), t, t.size(), Real{0});
+  };
+  clear(trace.rows.view(0, {2 * s.slab()}));  // the states before the first step
+  clear(trace.c0.view(0, {batch * k}));
+  clear(trace.c1.view(0, {batch * k}));
+  copy_runs(given, 0, s.dof, trace.rows, 0, s.width(), s.given * batch, s.dof);
+  GemmCall first{.m = batch, .n = 4 * k, .k = s.dof + k}, second{.m = batch, .n = 4 * k, .k = 2 * k},
+      move{.m = batch, .n = s.dof, .k = k};
+  for (GemmCall* call : {&first, &second, &move}) {
+    call->a = trace.rows;
+    call->a_ld = s.width();
+    call->b_transposed = true;
+  }
+  first.b = w.layer0.value(), first.b_ld = s.dof + k, first.c = trace.gates0, first.c_ld = 4 * k;
+  first.residual = x_gates, first.residual_ld = 4 * k;
+  second.b = w.layer1.value(), second.b_ld = 2 * k, second.c = trace.gates1, second.c_ld = 4 * k;
+  second.bias = w.bias1.value();
+  move.b = w.diff.value(), move.b_ld = k, move.c = move.residual = trace.rows;
+  move.c_ld = move.residual_ld = s.width(), move.bias = w.diff_bias.value();
+  for (std::size_t t = 1; t < frames; ++t) {
+    first.a_offset[0] = s.pose_at(t - 1);
+    first.c_offset = first.residual_offset = s.gates_at(t);
+    gemm(context, first);
+    context.launch("rollout", "rollout_cell", s.cells(context), from(trace.gates0, s.gates_at(t)),
+                   from(trace.c0, s.state_at(t - 1)), from(trace.rows, s.h0_at(t)), s.width(),
+                   from(trace.c0, s.state_at(t)), batch, k);
+    second.a_offset[0] = s.h0_at(t);
+    second.c_offset = s.gates_at(t);
+    gemm(context, second);
+    context.launch("rollout", "rollout_cell", s.cells(context), from(trace.gates1, s.gates_at(t)),
+                   from(trace.c1, s.state_at(t - 1)), from(trace.rows, s.h1_at(t)), s.width(),
+                   from(trace.c1, s.state_at(t)), batch, k);
+    if (t < s.given) continue;
+    move.a_offset[0] = s.h1_at(t);
+    move.c_offset = s.pose_at(t);
+    move.residual_offset = s.pose_at(t - 1);
+    gemm(context, move);
+  }
+  return trace;
+}
+
+/// Gradients by given, x_gates, W0, W1, b1, Wd, bd of a rollout whose motion has gradient g [N, B, M].
+inline std::vector<Var> rollout_backward(const RolloutTrace& trace, const Node& self, const Tensor& g,
+                                         const Needs& needs) {
+  const Context& context = g.context();
+  const RolloutShape& s = trace.shape;
+  const std::size_t k = s.k, batch = s.batch, frames = s.frames;
+  // Gradients of the rows, gathered from the steps that read them.
+  const Tensor rows = filled(context, trace.rows.shape(), 0);
+  copy_runs(g, 0, s.dof, rows, 0, s.width(), frames * batch, s.dof);
+  const Tensor gates0(context, trace.gates0.shape()), gates1(context, trace.gates1.shape()),
+      dc0 = filled(context, {batch, k}, 0), dc1 = filled(context, {batch, k}, 0);
+  GemmCall move{.m = batch, .n = k, .k = s.dof}, second{.m = batch, .n = 2 * k, .k = 4 * k},
+      first{.m = batch, .n = s.dof + k, .k = 4 * k};
+  for (GemmCall* call : {&move, &second, &first}) {
+    call->c = rows;
+    call->c_ld = s.width();
+    call->accumulate = true;
+  }
+  move.a = rows, move.a_ld = s.width(), move.b = self.inputs[5].value(), move.b_ld = k;
+  second.a = gates1, second.a_ld = 4 * k, second.b = self.inputs[3].value(), second.b_ld = 2 * k;
+  first.a = gates0, first.a_ld = 4 * k, first.b = self.inputs[2].value(), first.b_ld = s.dof + k;
+  for (std::size_t t = frames; t-- > 1;) {
+    if (t >= s.given) {
+      move.a_offset[0] = s.pose_at(t);
+      move.c_offset = s.h1_at(t);
+      gemm(context, move);
+      context.launch("rollout", "add_rows", Grid::items(batch * vectors(context, s.dof)),
+                     from(rows, s.pose_at(t)), s.width(), from(rows, s.pose_at(t - 1)), s.width(), batch,
+                     s.dof);
+    }
+    context.launch("rollout", "rollout_cell_backward", s.cells(context), from(trace.gates1, s.gates_at(t)),
+                   from(trace.c1, s.state_at(t)), from(trace.c1, s.state_at(t - 1)), from(rows, s.h1_at(t)),
+                   s.width(), dc1, from(gates1, s.gates_at(t)), batch, k);
+    second.a_offset[0] = s.gates_at(t);
+    second.c_offset = s.h0_at(t);
+    gemm(context, second);
+    context.launch("rollout", "rollout_cell_backward", s.cells(context), from(trace.gates0, s.gates_at(t)),
+                   from(trace.c0, s.state_at(t)), from(trace.c0, s.state_at(t - 1)), from(rows, s.h0_at(t)),
+                   s.width(), dc0, from(gates0, s.gates_at(t)), batch, k);
+    first.a_offset[0] = s.gates_at(t);
+    first.c_offset = s.pose_at(t - 1);
+    gemm(context, first);
+  }
+  // Weights: all steps in one product each.
+  const auto by_weight = [&](const Tensor& gradient, std::size_t first_gradient, std::size_t gradient_ld,
+                             std::size_t seen, std::size_t m, std::size_t n, std::size_t steps) {
+    GemmCall call{.m = m, .n = n, .k = steps * batch};
+    call.a = gradient, call.a_offset[0] = first_gradient, call.a_ld = gradient_ld, call.a_transposed = true;
+    call.b = trace.rows, call.b_offset[0] = seen, call.b_ld = s.width();
+    call.c = Tensor(context, {m, n}), call.c_ld = n;
+    gemm(context, call);
+    return Var::constant(call.c);
+  };
+  const std::size_t free_steps = frames > s.given ? frames - s.given : 0;
+  std::vector<Var> out(7);
+  const auto poses = [&](std::size_t t, std::size_t count) {  // gradients of a_t .. as [count, B, M]
+    Tensor part(context, {count, batch, s.dof});
+    copy_runs(rows, s.pose_at(t), s.width(), part, 0, s.dof, count * batch, s.dof);
+    return Var::constant(part);
+  };
+  if (needs[0]) out[0] = poses(0, s.given);
+  if (needs[1]) out[1] = Var::constant(gates0);
+  if (needs[2]) out[2] = by_weight(gates0, 0, 4 * k, s.pose_at(0), 4 * k, s.dof + k, frames - 1);
+  if (needs[3]) out[3] = by_weight(gates1, 0, 4 * k, s.h0_at(1), 4 * k, 2 * k, frames - 1);
+  if (needs[4]) out[4] = sum_middle(Var::constant(gates1), 1, (frames - 1) * batch, 4 * k, 1, {4 * k});
+  if (needs[5] && free_steps > 0)
+    out[5] = by_weight(rows, s.pose_at(s.given), s.width(), s.h1_at(s.given), s.dof, k, free_steps);
+  if (needs[6] && free_steps > 0)
+    out[6] = sum_middle(poses(s.given, free_steps), 1, free_steps * batch, s.dof, 1, {s.dof});
+  return out;
+}
+
+/// The same motion out of elementary operations; every derivative exists.
+inline Var rollout_composed(const Var& given, const Var& x_gates, const RolloutWeights& w) {
+  const std::size_t frames = x_gates.dim(0) + 1, batch = given.dim(1), dof = given.dim(2), k = w.diff.dim(1);
+  const Context& context = given.context();
+  const auto cell = [&](const Var& gates, Var& h, Var& c) {
+    const auto gate = [&](std::size_t index) { return slice(gates, 1, index * k, k); };
+    c = sigmoid(gate(1)) * c + sigmoid(gate(0)) * tanh(gate(2));
+    h = sigmoid(gate(3)) * tanh(c);
+  };
+  const auto rows = [&](const Var& bias) {
+    return expand(bias, 1, batch, bias.size(), 1, {batch, bias.size()});
+  };
+  Var h0 = zeros(context, {batch, k}), c0 = h0, h1 = h0, c1 = h0;
+  Var a = reshape(slice(given, 0, 0, 1), {batch, dof});
+  std::vector<Var> motion{slice(given, 0, 0, 1)};
+  for (std::size_t t = 1; t < frames; ++t) {
+    cell(reshape(slice(x_gates, 0, t - 1, 1), {batch, 4 * k}) +
+             matmul(concat_axis({a, h0}, 1), w.layer0, false, true),
+         h0, c0);
+    cell(rows(w.bias1) + matmul(concat_axis({h0, h1}, 1), w.layer1, false, true), h1, c1);
+    a = t < given.dim(0) ? reshape(slice(given, 0, t, 1), {batch, dof})
+                         : a + matmul(h1, w.diff, false, true) + rows(w.diff_bias);
+    motion.push_back(reshape(a, {1, batch, dof}));
+  }
+  return concat_axis(motion, 0);
+}
+
+}  // namespace detail
+
+/// Motion [N, B, M] that begins with `given` [n, B, M], 1 <= n <= N, and goes on by itself. `x_gates`
+/// [N-1, B, 4k] is what else the first layer's gates of steps 1 .. N-1 see, biases included. States begin at
+/// zero and also run over the given frames.
+inline Var rollout(const Var& given, const Var& x_gates, const RolloutWeights& w) {
+  const std::size_t k = w.diff.dim(1), dof = w.diff.dim(0), frames = x_gates.dim(0) + 1;
+  require(given.value().rank() == 3 && given.dim(2) == dof && given.dim(0) >= 1 && given.dim(0) <= frames &&
+              x_gates.dim(1) == given.dim(1) && x_gates.dim(2) == 4 * k &&
+              w.layer0.shape() == Shape{4 * k, dof + k} && w.layer1.shape() == Shape{4 * k, 2 * k},
+          "rollout: given ", given.shape(), ", gates ", x_gates.shape(), ", weights ", w.layer0.shape(), ", ",
+          w.layer1.shape(), ", ", w.diff.shape());
+  if (frames == 1) return given;
+  const detail::RolloutTrace trace = detail::rollout_forward(given.value(), x_gates.value(), w);
+  const detail::RolloutShape& s = trace.shape;
+  Tensor motion(given.context(), {frames, s.batch, dof});
+  detail::copy_runs(trace.rows, 0, s.width(), motion, 0, dof, frames * s.batch, dof);
+  return record("rollout", {given, x_gates, w.layer0, w.layer1, w.bias1, w.diff, w.diff_bias},
+                std::move(motion),
+                [trace](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
+                  if (!detail::recording()) return detail::rollout_backward(trace, self, g.value(), needs);
+                  return detail::derivative_of_composed(self, g, needs, [](const std::vector<Var>& in) {
+                    return detail::rollout_composed(in[0], in[1], {in[2], in[3], in[4], in[5], in[6]});
+                  });
+                });
+}
+
+}  // namespace motiongan
