@@ -4,6 +4,7 @@
 #include <motiongan/io/state_dict.hpp>
 #include <motiongan/models/cnn_critic.hpp>
 #include <motiongan/models/cnn_generator.hpp>
+#include <motiongan/models/rnn_generator.hpp>
 #include <motiongan/train/wgan_gp.hpp>
 
 namespace motiongan::golden {
@@ -128,6 +129,23 @@ inline void cnn_generator(const File& file, const Context& context, Pairs& outpu
   add_gradients(gradients, file, parameters, grad(mean(square(motion)), values_of(parameters)));
 }
 
+inline void rnn_generator(const File& file, const Context& context, Pairs& outputs, Pairs& gradients) {
+  RnnGenerator model(Initializer(context, 1), {.vocabulary = file.number("vocab"),
+                                               .dof = file.number("dof"),
+                                               .frames = file.number("frames"),
+                                               .hidden = file.number("hidden")});
+  const auto parameters = named_parameters(model);
+  io::load_parameters(parameters, file.content(), file.where(), "param.");
+  const Sentences text = file.sentences(context);
+  const Var z = Var::constant(file.tensor(context, "in.z"));
+  const Var motion = model(text, z),
+            completed = model(text, z, {}, Var::constant(file.tensor(context, "in.seed")));
+  outputs.push_back(output(file, "out.motion", motion));
+  outputs.push_back(output(file, "out.completed", completed));
+  const Var loss = mean(square(motion)) + mean(square(completed));
+  add_gradients(gradients, file, parameters, grad(loss, values_of(parameters)));
+}
+
 inline void cnn_critic(const File& file, const Context& context, Pairs& outputs, Pairs& gradients) {
   const std::string validate = file.text("validate");
   require(validate == "dense" || validate == "mod2" || validate == "final", file.where(), ": validate is \"",
@@ -174,11 +192,13 @@ inline Report compare(const std::filesystem::path& path) {
   std::vector<Pair> outputs, gradients;
   if (report.model == "cnn_generator")
     detail::cnn_generator(file, context, outputs, gradients);
+  else if (report.model == "rnn_generator")
+    detail::rnn_generator(file, context, outputs, gradients);
   else if (report.model == "cnn_critic")
     detail::cnn_critic(file, context, outputs, gradients);
   else
     throw Error(file.where(), ": no comparison for a model called \"", report.model,
-                "\"; there are: cnn_generator, cnn_critic");
+                "\"; there are: cnn_generator, rnn_generator, cnn_critic");
   add_errors(report, outputs);
   add_errors(report, gradients);
   report.outputs = outputs.size();
