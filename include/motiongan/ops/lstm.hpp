@@ -1,7 +1,8 @@
-// One LSTM layer over time: a fused form for values and first derivatives, a composed one for higher
-// derivatives.
+// One LSTM layer over time: fused for values, first derivatives and the second derivative that a gradient
+// penalty takes; composed of elementary operations for all other and higher ones.
 #pragma once
 #include "motiongan/autograd/grad.hpp"
+#include "motiongan/ops/lstm_sweeps.hpp"
 #include "motiongan/ops/matmul.hpp"
 
 namespace motiongan {
@@ -43,70 +44,41 @@ inline Var lstm_layer_composed(const Var& x_gates, const Var& w_hh, const Var& h
   return concat_axis({concat_axis(all_h, 1), concat_axis(all_c, 1)}, 0);
 }
 
-/// First derivative of lstm_layer by its four inputs, fused; `gates` are the activations of the forward pass.
-inline std::vector<Var> lstm_layer_backward(const Node& self, const Tensor& g, const Tensor& gates,
-                                            const Indices& lengths, const Needs& needs) {
-  const Tensor &w_hh = self.inputs[1].value(), &h_first = self.inputs[2].value(),
-               &c_first = self.inputs[3].value(), &states = self.value;
-  const Context& context = g.context();
-  const std::size_t frames = states.dim(1), batch = states.dim(2), k = states.dim(3), slab = batch * k;
-  const auto state_at = [&](const Tensor& s, std::size_t kind, std::size_t t) {
-    return s.view((kind * frames + t) * slab, {batch, k});
-  };
-  Tensor gate_gradient(context, {frames, batch, 4 * k});
-  const Tensor dh = filled(context, {batch, k}, 0), dc = filled(context, {batch, k}, 0);
-  const Grid grid = Grid::items(batch * vectors(context, k));
-  GemmCall recurrent;  // gradient of the gates, times W_hh, goes to h of the step before
-  recurrent.m = batch;
-  recurrent.n = k;
-  recurrent.k = 4 * k;
-  recurrent.b = w_hh;
-  recurrent.c = dh;
-  recurrent.a_ld = 4 * k;
-  recurrent.b_ld = recurrent.c_ld = k;
-  recurrent.accumulate = true;
-  for (std::size_t t = frames; t-- > 0;) {
-    const Tensor now = gate_gradient.view(t * 4 * slab, {batch, 4 * k});
-    const Tensor c_before = t > 0 ? state_at(states, 1, t - 1) : c_first;
-    const Tensor activations = gates.view(t * 4 * slab, {batch, 4 * k});
-    if (lengths.empty())
-      context.launch("lstm", "lstm_cell_backward", grid, activations, state_at(states, 1, t), c_before,
-                     state_at(g, 0, t), state_at(g, 1, t), static_cast<cl_mem>(nullptr), t, dh, dc, now,
-                     batch, k);
-    else
-      context.launch("lstm", "lstm_cell_backward", grid, activations, state_at(states, 1, t), c_before,
-                     state_at(g, 0, t), state_at(g, 1, t), lengths, t, dh, dc, now, batch, k);
-    if (t > 0 || needs[2]) {
-      recurrent.a = now;
-      gemm(context, recurrent);
-    }
-  }
-  Var by_weights;
-  if (needs[1]) {  // sum over t of (gate gradient)_t^T h_{t-1}, all steps in one product, the first from
-                   // h_first
-    Tensor w(context, {4 * k, k});
-    GemmCall call;
-    call.m = 4 * k;
-    call.n = k;
-    call.a_ld = 4 * k;
-    call.b_ld = call.c_ld = k;
-    call.a_transposed = true;
-    call.c = w;
-    call.k = batch;
-    call.a = gate_gradient;
-    call.b = h_first;
-    gemm(context, call);
-    if (frames > 1) {
-      call.k = (frames - 1) * batch;
-      call.a_offset[0] = 4 * slab;
-      call.b = states;
-      call.accumulate = true;
-      gemm(context, call);
-    }
-    by_weights = Var::constant(w);
-  }
-  return {Var::constant(gate_gradient), by_weights, needs[2] ? Var::constant(dh) : Var(),
-          needs[3] ? Var::constant(dc) : Var()};
+/// Partial derivatives of `f` by those inputs that are needed, themselves differentiable. Copies of the
+/// inputs are younger than what they copy, so the sweep stops at them.
+template <class F>
+std::vector<Var> partial_derivatives(const std::vector<Var>& inputs, const Var& g, const Needs& needs,
+                                     const F& f) {
+  std::vector<Var> copies, wanted;
+  for (const Var& input : inputs) copies.push_back(reshape(input, input.shape()));
+  for (std::size_t i = 0; i < copies.size(); ++i)
+    if (needs[i]) wanted.push_back(copies[i]);
+  const std::vector<Var> found = grad({f(copies)}, {g}, wanted, {.create_graph = true});
+  std::vector<Var> result(inputs.size());
+  for (std::size_t i = 0, j = 0; i < result.size(); ++i)
+    if (needs[i]) result[i] = found[j++];
+  return result;
+}
+
+/// The gradient of lstm_layer by its gates, [T, B, 4k], as an operation of its own: this is what a gradient
+/// penalty differentiates once more. First states are constant, every sample runs to T. Its own first
+/// derivative is fused, higher ones are composed.
+inline Var lstm_layer_slope(const Var& g, const Var& x_gates, const Var& w_hh, const LstmPass& pass) {
+  const LstmGradients first = lstm_backward(pass, g.value(), {.keep_totals = true});
+  return record(
+      "lstm_layer_slope", {g, x_gates, w_hh}, first.gates,
+      [pass, totals = first.totals](const Node& self, const Var& u, const Needs& needs) -> std::vector<Var> {
+        if (recording())
+          return partial_derivatives(self.inputs, u, needs, [&](const std::vector<Var>& v) {
+            const Var states =
+                lstm_layer_composed(v[1], v[2], Var::constant(pass.h_first), Var::constant(pass.c_first), {});
+            return grad({states}, {v[0]}, {v[1]}, {.create_graph = true})[0];
+          });
+        const LstmSlopeGradients found =
+            lstm_slope_gradients(pass, self.value, totals, u.value(), needs[1], needs[2]);
+        return {Var::constant(found.g), needs[1] ? Var::constant(found.gates) : Var(),
+                needs[2] ? Var::constant(found.w_hh) : Var()};
+      });
 }
 
 }  // namespace detail
@@ -116,60 +88,34 @@ inline std::vector<Var> lstm_layer_backward(const Node& self, const Tensor& g, c
 /// all run to T). Returns all states, [2, T, B, k]: h of every step, then c of every step.
 inline Var lstm_layer(const Var& x_gates, const Var& w_hh, const Var& h_first, const Var& c_first,
                       const Indices& lengths = {}) {
-  const std::size_t frames = x_gates.dim(0), batch = x_gates.dim(1), k = w_hh.dim(1), slab = batch * k;
+  const std::size_t batch = x_gates.dim(1), k = w_hh.dim(1), slab = batch * k;
   require(x_gates.dim(2) == 4 * k && w_hh.dim(0) == 4 * k && h_first.size() == slab && c_first.size() == slab,
           "lstm_layer: gates ", x_gates.shape(), ", weights ", w_hh.shape(), ", first state ",
           h_first.shape());
-  const Context& context = x_gates.context();
-  Tensor states(context, {2, frames, batch, k});
-  const Tensor gates(context, {frames, batch, 4 * k});
-  GemmCall call;
-  call.m = batch;
-  call.n = 4 * k;
-  call.k = k;
-  call.b = w_hh.value();
-  call.c = gates;
-  call.residual = x_gates.value();
-  call.a_ld = call.b_ld = k;
-  call.c_ld = call.residual_ld = 4 * k;
-  call.b_transposed = true;
-  const auto state_at = [&](std::size_t kind, std::size_t t) {
-    return states.view((kind * frames + t) * slab, {batch, k});
-  };
-  for (std::size_t t = 0; t < frames; ++t) {
-    const Tensor h_before = t > 0 ? state_at(0, t - 1) : h_first.value(),
-                 c_before = t > 0 ? state_at(1, t - 1) : c_first.value();
-    const Tensor now = gates.view(t * 4 * slab, {batch, 4 * k});
-    call.a = h_before;
-    call.c_offset = call.residual_offset = t * 4 * slab;
-    gemm(context, call);
-    const Grid grid = Grid::items(batch * detail::vectors(context, k));
-    if (lengths.empty())
-      context.launch("lstm", "lstm_cell", grid, now, c_before, h_before, static_cast<cl_mem>(nullptr), t,
-                     state_at(0, t), state_at(1, t), batch, k);
-    else
-      context.launch("lstm", "lstm_cell", grid, now, c_before, h_before, lengths, t, state_at(0, t),
-                     state_at(1, t), batch, k);
-  }
-  return record("lstm_layer", {x_gates, w_hh, h_first, c_first}, std::move(states),
-                [gates, lengths](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
-                  if (!detail::recording())
-                    return detail::lstm_layer_backward(self, g.value(), gates, lengths, needs);
-                  // A higher derivative is asked: differentiate the composed form. The copies of the inputs
-                  // are younger than what they copy, so the sweep stops at them and gives partial
-                  // derivatives.
-                  std::vector<Var> copies, wanted;
-                  for (const Var& input : self.inputs) copies.push_back(reshape(input, input.shape()));
-                  for (std::size_t i = 0; i < copies.size(); ++i)
-                    if (needs[i]) wanted.push_back(copies[i]);
-                  const Var composed =
-                      detail::lstm_layer_composed(copies[0], copies[1], copies[2], copies[3], lengths);
-                  const std::vector<Var> found = grad({composed}, {g}, wanted, {.create_graph = true});
-                  std::vector<Var> result(self.inputs.size());
-                  for (std::size_t i = 0, j = 0; i < result.size(); ++i)
-                    if (needs[i]) result[i] = found[j++];
-                  return result;
-                });
+  const detail::LstmPass pass =
+      detail::lstm_forward(x_gates.value(), w_hh.value(), h_first.value(), c_first.value(), lengths);
+  return record(
+      "lstm_layer", {x_gates, w_hh, h_first, c_first}, pass.states,
+      [pass](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
+        const auto& in = self.inputs;
+        if (!detail::recording()) {
+          const detail::LstmGradients found = detail::lstm_backward(pass, g.value(), {.h_first = needs[2]});
+          Var by_weights;
+          if (needs[1]) {
+            by_weights = Var::constant(Tensor(g.context(), in[1].shape()));
+            detail::weight_gradient(pass, found.gates, pass.states, pass.h_first, by_weights.value(), false);
+          }
+          return {Var::constant(found.gates), by_weights, needs[2] ? Var::constant(found.h_first) : Var(),
+                  needs[3] ? Var::constant(found.c_first) : Var()};
+        }
+        // A higher derivative is asked. By the gates alone (a gradient penalty) it is fused.
+        if (needs == Needs{true, false, false, false} && pass.lengths.empty() && !in[2].requires_grad() &&
+            !in[3].requires_grad())
+          return {detail::lstm_layer_slope(g, in[0], in[1], pass), {}, {}, {}};
+        return detail::partial_derivatives(in, g, needs, [&](const std::vector<Var>& v) {
+          return detail::lstm_layer_composed(v[0], v[1], v[2], v[3], pass.lengths);
+        });
+      });
 }
 
 /// The last h or c of every sample, [B, k], out of lstm_layer's states; kind 0 is h, 1 is c.

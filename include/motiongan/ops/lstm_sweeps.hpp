@@ -1,0 +1,199 @@
+// The passes of one LSTM layer over its steps, values only: forwards, its gradient, and the gradient of that
+// gradient. Each step is one matrix product and one pointwise kernel of cl/lstm.cl. lstm.hpp makes
+// differentiable operations of them.
+#pragma once
+#include "motiongan/core/gemm.hpp"
+#include "motiongan/ops/reduce.hpp"
+
+namespace motiongan::detail {
+
+/// Something that may be absent, as a kernel argument: a null buffer then.
+template <class T>
+struct Maybe {
+  const T& value;
+  std::string describe() const { return value.empty() ? "none" : value.describe(); }
+};
+inline void add_argument(KernelArguments& to, const Maybe<Tensor>& tensor) {
+  to.set(tensor.value.empty() ? static_cast<cl_mem>(nullptr) : tensor.value.buffer());
+  add_argument(to, tensor.value.offset());
+}
+inline void add_argument(KernelArguments& to, const Maybe<Indices>& indices) {
+  to.set(indices.value.empty() ? static_cast<cl_mem>(nullptr) : indices.value.buffer());
+}
+
+/// What the forward pass was given and leaves for the derivatives.
+struct LstmPass {
+  Tensor w_hh, h_first, c_first;  // [4k, k], [B, k], [B, k]
+  Indices lengths;                // [B] or absent
+  Tensor gates;                   // activations, [T, B, 4k]
+  Tensor states;                  // h of every step, then c of every step, [2, T, B, k]
+
+  const Context& context() const { return states.context(); }
+  std::size_t frames() const { return states.dim(1); }
+  std::size_t batch() const { return states.dim(2); }
+  std::size_t hidden() const { return states.dim(3); }
+  std::size_t slab() const { return batch() * hidden(); }
+  Grid grid() const { return Grid::items(batch() * vectors(context(), hidden())); }
+
+  /// Step t of something shaped as the gates, [B, 4k].
+  Tensor gates_at(const Tensor& all, std::size_t t) const {
+    return all.view(t * 4 * slab(), {batch(), 4 * hidden()});
+  }
+  /// Step t of something of [T, B, k]; kind 1 is the second half of something of [2, T, B, k].
+  Tensor state_at(const Tensor& all, std::size_t t, std::size_t kind = 0) const {
+    return all.view((kind * frames() + t) * slab(), {batch(), hidden()});
+  }
+  Tensor c_at(std::size_t t) const { return state_at(states, t, 1); }
+  Tensor c_before(std::size_t t) const { return t > 0 ? c_at(t - 1) : c_first; }
+  Tensor h_before(std::size_t t) const { return t > 0 ? state_at(states, t - 1) : h_first; }
+};
+
+/// to[t] = h W_hh^T + from[t] for h [B, k]: what a state does to the gates of step t.
+inline void add_recurrence(const LstmPass& pass, const Tensor& h, const Tensor& from, const Tensor& to,
+                           std::size_t t) {
+  GemmCall call;
+  call.m = pass.batch();
+  call.n = call.c_ld = call.residual_ld = 4 * pass.hidden();
+  call.k = call.a_ld = call.b_ld = pass.hidden();
+  call.a = h;
+  call.b = pass.w_hh;
+  call.b_transposed = true;
+  call.c = to;
+  call.residual = from;
+  call.c_offset = call.residual_offset = t * 4 * pass.slab();
+  gemm(pass.context(), call);
+}
+
+/// to = rows W_hh, or += : what the gradient of a step's gates [B, 4k] does to the state before, [B, k].
+inline void recurrence_gradient(const LstmPass& pass, const Tensor& rows, const Tensor& to, bool accumulate) {
+  GemmCall call;
+  call.m = pass.batch();
+  call.n = call.b_ld = call.c_ld = pass.hidden();
+  call.k = call.a_ld = 4 * pass.hidden();
+  call.a = rows;
+  call.b = pass.w_hh;
+  call.c = to;
+  call.accumulate = accumulate;
+  gemm(pass.context(), call);
+}
+
+/// w [4k, k] = or += sum over t of rows[t]^T h[t-1], all steps in one product; the first step's, with
+/// `first`, apart (absent: left out). rows is [T, B, 4k], h [T, B, k] or more.
+inline void weight_gradient(const LstmPass& pass, const Tensor& rows, const Tensor& h, const Tensor& first,
+                            const Tensor& w, bool accumulate) {
+  GemmCall call;
+  call.m = call.a_ld = 4 * pass.hidden();
+  call.n = call.b_ld = call.c_ld = pass.hidden();
+  call.a = rows;
+  call.a_transposed = true;
+  call.c = w;
+  call.accumulate = accumulate;
+  if (!first.empty()) {
+    call.k = pass.batch();
+    call.b = first;
+    gemm(pass.context(), call);
+    call.accumulate = true;
+  }
+  if (pass.frames() == 1) return;
+  call.k = (pass.frames() - 1) * pass.batch();
+  call.a_offset[0] = 4 * pass.slab();
+  call.b = h;
+  gemm(pass.context(), call);
+}
+
+/// Runs the layer over x_gates [T, B, 4k].
+inline LstmPass lstm_forward(const Tensor& x_gates, const Tensor& w_hh, const Tensor& h_first,
+                             const Tensor& c_first, const Indices& lengths) {
+  const std::size_t frames = x_gates.dim(0), batch = x_gates.dim(1), k = w_hh.dim(1);
+  const Context& context = x_gates.context();
+  const LstmPass pass{.w_hh = w_hh,
+                      .h_first = h_first,
+                      .c_first = c_first,
+                      .lengths = lengths,
+                      .gates = Tensor(context, {frames, batch, 4 * k}),
+                      .states = Tensor(context, {2, frames, batch, k})};
+  for (std::size_t t = 0; t < frames; ++t) {
+    const Tensor h_before = pass.h_before(t);
+    add_recurrence(pass, h_before, x_gates, pass.gates, t);
+    context.launch("lstm", "lstm_cell", pass.grid(), pass.gates_at(pass.gates, t), pass.c_before(t), h_before,
+                   Maybe<Indices>{lengths}, t, pass.state_at(pass.states, t), pass.c_at(t), batch, k);
+  }
+  return pass;
+}
+
+struct LstmGradients {
+  Tensor gates;             // of the gates before activation, [T, B, 4k]
+  Tensor h_first, c_first;  // [B, k]; h_first only where asked
+  Tensor totals;            // where kept: whole gradients of h, then of c, of every step, [2, T, B, k]
+};
+
+struct LstmBackward {
+  bool h_first = false, keep_totals = false;
+};
+
+/// Gradients of <g, states>, g [2, T, B, k].
+inline LstmGradients lstm_backward(const LstmPass& pass, const Tensor& g, const LstmBackward& options) {
+  const Context& context = pass.context();
+  const std::size_t frames = pass.frames(), batch = pass.batch(), k = pass.hidden();
+  LstmGradients out{.gates = Tensor(context, {frames, batch, 4 * k}),
+                    .h_first = Tensor(context, {batch, k}),
+                    .c_first = Tensor(context, {batch, k}),
+                    .totals = options.keep_totals ? Tensor(context, {2, frames, batch, k}) : Tensor()};
+  for (std::size_t t = frames; t-- > 0;) {
+    const Tensor now = pass.gates_at(out.gates, t);
+    const Tensor h_total = options.keep_totals ? pass.state_at(out.totals, t) : Tensor(),
+                 c_total = options.keep_totals ? pass.state_at(out.totals, t, 1) : Tensor();
+    context.launch("lstm", "lstm_cell_backward", pass.grid(), pass.gates_at(pass.gates, t), pass.c_at(t),
+                   pass.c_before(t), pass.state_at(g, t), pass.state_at(g, t, 1),
+                   Maybe<Indices>{pass.lengths}, t, std::size_t{t + 1 == frames}, out.h_first, out.c_first,
+                   now, Maybe<Tensor>{h_total}, Maybe<Tensor>{c_total}, batch, k);
+    if (t > 0 || options.h_first) recurrence_gradient(pass, now, out.h_first, !pass.lengths.empty());
+  }
+  return out;
+}
+
+struct LstmSlopeGradients {
+  Tensor g;      // [2, T, B, k]
+  Tensor gates;  // of x_gates, [T, B, 4k]; absent unless asked
+  Tensor w_hh;   // [4k, k]; absent unless asked
+};
+
+/// Gradients of <u, slope> by g, x_gates and w_hh, where slope(g, x_gates, w_hh) [T, B, 4k] is `gates` of
+/// lstm_backward, and `totals` what that kept; first states are constant, no lengths.
+inline LstmSlopeGradients lstm_slope_gradients(const LstmPass& pass, const Tensor& slope,
+                                               const Tensor& totals, const Tensor& u, bool of_gates,
+                                               bool of_w_hh) {
+  const Context& context = pass.context();
+  const std::size_t frames = pass.frames(), batch = pass.batch(), k = pass.hidden();
+  LstmSlopeGradients out{.g = Tensor(context, {2, frames, batch, k}), .gates = {}, .w_hh = {}};
+  const Tensor gates(context, {frames, batch, 4 * k}), direct(context, {frames, batch, k});
+  for (std::size_t t = 0; t < frames; ++t) {
+    const Tensor now = pass.gates_at(gates, t);
+    if (t > 0) add_recurrence(pass, pass.state_at(out.g, t - 1), u, gates, t);
+    const Tensor c_before = t > 0 ? pass.state_at(out.g, t - 1, 1) : Tensor(),
+                 direct_before = t > 0 ? pass.state_at(direct, t - 1) : Tensor();
+    context.launch("lstm", "lstm_slope_forward", pass.grid(), t > 0 ? now : pass.gates_at(u, t),
+                   pass.gates_at(pass.gates, t), pass.c_at(t), pass.c_before(t), pass.state_at(totals, t),
+                   pass.state_at(totals, t, 1), Maybe<Tensor>{c_before}, Maybe<Tensor>{direct_before},
+                   pass.state_at(out.g, t), pass.state_at(out.g, t, 1), now, pass.state_at(direct, t), batch,
+                   k);
+  }
+  if (!of_gates && !of_w_hh) return out;
+  const Tensor h_carry(context, {batch, k}), c_carry(context, {batch, k}), none;
+  for (std::size_t t = frames; t-- > 0;) {
+    const Tensor now = pass.gates_at(gates, t);
+    context.launch("lstm", "lstm_slope_backward", pass.grid(), pass.gates_at(pass.gates, t), pass.c_at(t),
+                   pass.c_before(t), pass.state_at(direct, t), Maybe<Tensor>{t + 1 < frames ? h_carry : none},
+                   c_carry, now, batch, k);
+    if (t > 0) recurrence_gradient(pass, now, h_carry, false);
+  }
+  out.gates = gates;
+  if (of_w_hh) {
+    out.w_hh = Tensor(context, {4 * k, k});
+    weight_gradient(pass, gates, pass.states, pass.h_first, out.w_hh, false);
+    weight_gradient(pass, slope, out.g, {}, out.w_hh, true);
+  }
+  return out;
+}
+
+}  // namespace motiongan::detail
