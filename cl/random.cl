@@ -27,21 +27,13 @@ inline void philox(uintv* counter0, uintv* counter1, uintv* counter2, uintv* cou
 /// Uniform in (0, 1): never 0, so that its logarithm is finite.
 inline floatv unit(uintv bits) { return (convert_float16(bits >> 9) + 0.5f) * 0x1p-23f; }
 
-/// out[t, b, c] ~ N(0, 1), Box-Muller; row t is frame first_frame + t, counted from
-/// frame_of[b] where that is given. One work-item makes 64 channels of one row: block q of 16 lanes takes
-/// counter (c/64*16 + lane, frame, first_sample + b, stream ^ step<<8); its four words become channels
-/// c/64*64 + 16*q + lane.
-kernel void random_normal(global real* out, uint out0, uint frames, uint batch, uint channels, uint seed0,
-                          uint seed1, uint stream, uint step, uint first_sample, int first_frame,
-                          global const int* frame_of) {
-  const uint blocks = (channels + 63) / 64, item = get_global_id(0);
-  const uint row = item / blocks, block = item % blocks;
-  if (row >= frames * batch) return;
+/// 64 standard normal numbers, Box-Muller, of which the first `left` are written: number `block` of a row.
+/// Block q of 16 lanes takes counter (block*16 + lane, frame, sample, stream_step); its four words become
+/// channels block*64 + 16*q + lane.
+inline void normal_block(global real* p, uint left, uint block, uint frame, uint sample, uint stream_step,
+                         uint seed0, uint seed1) {
   const uintv lane = (uintv)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
-  uintv a = lane + block * 16,
-        b = (uintv)((uint)((int)(row / batch) + first_frame + (frame_of ? frame_of[row % batch] : 0))),
-        c = (uintv)(first_sample + row % batch);
-  uintv d = (uintv)(stream ^ (step << 8));
+  uintv a = lane + block * 16, b = (uintv)(frame), c = (uintv)(sample), d = (uintv)(stream_step);
   philox(&a, &b, &c, &d, seed0, seed1);
   floatv values[4];
   const floatv radius0 = sqrt(-2 * log(unit(a))), radius1 = sqrt(-2 * log(unit(c)));
@@ -52,8 +44,6 @@ kernel void random_normal(global real* out, uint out0, uint frames, uint batch, 
   sine = sincos(6.2831853071795865f * unit(d), &cosine);
   values[2] = radius1 * cosine;
   values[3] = radius1 * sine;
-  global real* p = out + out0 + row * channels + block * 64;
-  const uint left = channels - block * 64;
   for (uint q = 0; q < 4; ++q) {
 #ifndef REAL_IS_DOUBLE
     if (left >= 16 * q + 16) {
@@ -65,6 +55,32 @@ kernel void random_normal(global real* out, uint out0, uint frames, uint batch, 
     vstore16(values[q], 0, lanes);
     for (uint j = 0; j < 16 && 16 * q + j < left; ++j) p[16 * q + j] = lanes[j];
   }
+}
+
+/// out[t, b, c] ~ N(0, 1); row t is frame first_frame + t, counted from frame_of[b] where that is given. One
+/// work-item makes 64 channels of one row.
+kernel void random_normal(global real* out, uint out0, uint frames, uint batch, uint channels, uint seed0,
+                          uint seed1, uint stream, uint step, uint first_sample, int first_frame,
+                          global const int* frame_of) {
+  const uint blocks = (channels + 63) / 64, item = get_global_id(0);
+  const uint row = item / blocks, block = item % blocks;
+  if (row >= frames * batch) return;
+  const uint frame = (uint)((int)(row / batch) + first_frame + (frame_of ? frame_of[row % batch] : 0));
+  normal_block(out + out0 + row * channels + block * 64, channels - block * 64, block, frame,
+               first_sample + row % batch, stream ^ (step << 8), seed0, seed1);
+}
+
+/// The same where every sample has a seed, a number and a first frame of its own: keys[b] = (seed's low word,
+/// its high word, sample, frame), [batch, 4].
+kernel void random_normal_each(global real* out, uint out0, uint frames, uint batch, uint channels,
+                               uint stream, int first_frame, global const int* keys) {
+  const uint blocks = (channels + 63) / 64, item = get_global_id(0);
+  const uint row = item / blocks, block = item % blocks;
+  if (row >= frames * batch) return;
+  global const int* key = keys + row % batch * 4;
+  normal_block(out + out0 + row * channels + block * 64, channels - block * 64, block,
+               (uint)((int)(row / batch) + first_frame + key[3]), (uint)key[2], stream, (uint)key[0],
+               (uint)key[1]);
 }
 
 /// out[i] uniform in (0, 1) by the first word of counter (0, 0, first_sample + i, stream ^ step<<8).

@@ -167,3 +167,26 @@ TEST_CASE("another seed, stream, step, sample or frame gives other numbers, the 
     drawn.push_back(here);
   }
 }
+
+TEST_CASE("samples with keys of their own have the numbers of random_normal") {
+  const Context context;
+  const std::uint64_t seeds[] = {7, 0x123456789abcdefull, 7};
+  const std::uint32_t samples[] = {0, 4000000000u, 5};
+  const std::int32_t frames[] = {0, 3, -2};
+  std::vector<cl_int> keys;
+  for (int b = 0; b < 3; ++b)
+    for (const std::uint32_t word :
+         {static_cast<std::uint32_t>(seeds[b]), static_cast<std::uint32_t>(seeds[b] >> 32), samples[b],
+          static_cast<std::uint32_t>(frames[b])})
+      keys.push_back(static_cast<cl_int>(word));
+  const Tensor all(context, {2, 3, 70});
+  fill_normal_each(all, Stream::noise, 10, Indices(context, keys));
+  const std::vector<float> values = all.to_host();
+  for (std::size_t b = 0; b < 3; ++b) {
+    const RandomKey key{.seed = seeds[b], .first_sample = samples[b], .first_frame = 10 + frames[b]};
+    const std::vector<float> alone = random_normal(context, key, 2, 1, 70).to_host();
+    for (std::size_t t = 0; t < 2; ++t)
+      for (std::size_t c = 0; c < 70; ++c) CHECK(values[(t * 3 + b) * 70 + c] == alone[t * 70 + c]);
+  }
+  CHECK_THROWS_AS(fill_normal_each(all, Stream::noise, 0, Indices(context, 11)), Error);
+}

@@ -83,6 +83,18 @@ inline Tensor random_normal(const Context& context, const RandomKey& key, std::s
   return out;
 }
 
+/// Fills `out` [frames, batch, channels] with the numbers that random_normal() makes for samples with keys of
+/// their own: `keys` holds for each (low word of the seed, high word, sample, first frame), row t is frame
+/// first_frame + t counted from there.
+inline void fill_normal_each(const Tensor& out, Stream stream, std::int32_t first_frame,
+                             const Indices& keys) {
+  const std::size_t frames = out.dim(0), batch = out.dim(1), channels = out.dim(2);
+  require(keys.size() >= 4 * batch, "fill_normal_each: ", keys.size(), " numbers of keys for ", batch,
+          " samples, 4 each");
+  out.context().launch("random", "random_normal_each", Grid::items(frames * batch * ((channels + 63) / 64)),
+                       out, frames, batch, channels, static_cast<cl_uint>(stream), first_frame, keys);
+}
+
 /// One uniform number of (0, 1) per sample, [batch].
 inline Tensor random_uniform(const Context& context, const RandomKey& key, std::size_t batch) {
   Tensor out(context, {batch});
