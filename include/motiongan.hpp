@@ -29,6 +29,7 @@
 #include "motiongan/motion/kinematics.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/motion/procedural.hpp"
+#include "motiongan/motion/root_track.hpp"
 #include "motiongan/motion/rotation.hpp"
 #include "motiongan/motion/statistics.hpp"
 //

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "motiongan/motion/dataset.hpp"
+#include "walking_clips.hpp"
 
 using namespace motiongan;
 using namespace motiongan::motion;
@@ -14,24 +15,6 @@ using namespace motiongan::motion;
 namespace {
 
 Quat about(std::size_t axis, double angle) { return axis_rotation(axis, angle); }
-
-/// Someone who walks along a curve and leans forward, recorded at any place and heading of the room.
-Motion walk(double heading, const Vec3& place, std::size_t frames = 40) {
-  Motion m;
-  m.skeleton.joints = {{"Hips", -1, {}, {}, {}}, {"Spine", 0, {0, 1, 0}, {}, {}}};
-  m.rate = 10;
-  m.frames = frames;
-  Vec3 at = place;
-  for (std::size_t f = 0; f < frames; ++f) {
-    const double t = 0.1 * static_cast<double>(f), yaw = heading + 0.9 * t;
-    m.rotations.push_back(multiply(about(1, yaw), about(0, 0.2 + 0.1 * std::sin(3 * t))));
-    m.rotations.push_back(about(2, 0.3 * std::cos(2 * t)));
-    m.positions.push_back(at);
-    m.positions.push_back({0, 1, 0});
-    at = add(at, {0.1 * std::sin(yaw), 0.01 * std::cos(t), 0.1 * std::cos(yaw)});
-  }
-  return m;
-}
 
 }  // namespace
 
@@ -51,7 +34,7 @@ TEST_CASE("a rotation as tilt, yaw, tilt, and back") {
 }
 
 TEST_CASE("the yaw counts whole turns") {
-  Motion m = walk(0, {}, 200);  // 18 radians
+  Motion m = curved_walk(0, {}, 200);  // 18 radians
   const PoseLayout layout(m.skeleton, true, 0, RootRotation::heading);
   CHECK(layout.yaw_dim() == 1);
   CHECK(layout.name(1) == "Hips.yaw");
@@ -66,9 +49,10 @@ TEST_CASE("the yaw counts whole turns") {
 
 TEST_CASE("a window is the same wherever and whichever way it was recorded") {
   const Vec3 there{5, 0, -3};
-  const Dataset data = Dataset::from_motions(
-      {{"a", walk(0, {}), {"walk"}}, {"b", walk(2.5, there), {"walk"}}, {"c", walk(-1, {}), {"walk"}}},
-      {.frames = 8, .rate = 5, .train_share = 1});
+  const Dataset data = Dataset::from_motions({{"a", curved_walk(0, {}, 40), {"walk"}},
+                                              {"b", curved_walk(2.5, there, 40), {"walk"}},
+                                              {"c", curved_walk(-1, {}, 40), {"walk"}}},
+                                             {.frames = 8, .rate = 5, .train_share = 1});
   REQUIRE(data.train.size() >= 2);
   CHECK(data.stride == 2);
   CHECK(data.format.relative_dims.size() == 3);
@@ -79,7 +63,7 @@ TEST_CASE("a window is the same wherever and whichever way it was recorded") {
     data.window(data.train[1], start, other);
     for (std::size_t i = 0; i < first.size(); ++i) CHECK(first[i] == doctest::Approx(other[i]).epsilon(1e-4));
     // Back as motion it starts at the origin without yaw and does what the recording does, seen from there.
-    const Motion source = walk(0, {}), motion = data.to_motion(first);
+    const Motion source = curved_walk(0, {}, 40), motion = data.to_motion(first);
     const Quat turn_back =
         inverse(quat_from_heading({0, heading_from_quat(source.rotation(start, 0))[1], 0}));
     for (std::size_t i = 0; i < 8; ++i) {

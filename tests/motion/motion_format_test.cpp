@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "../support/messages.hpp"
 #include "motiongan/io/motion_format_json.hpp"
 
 using namespace motiongan;
@@ -58,6 +59,40 @@ TEST_CASE("JSON text there and back is the same format") {
   CHECK(mask == std::vector<bool>{false, false, false, false, true, false});
 }
 
+TEST_CASE("every root form, and the training range, survive JSON; older files have no range") {
+  for (const RootRotation form : {RootRotation::expmap, RootRotation::heading, RootRotation::velocity}) {
+    MotionFormat a = small_format();
+    a.layout = PoseLayout(a.skeleton(), true, 1, form);
+    nlohmann::json json = io::to_json(a);
+    CHECK(!json.contains("low"));
+    CHECK(io::motion_format_from_json(json).low.empty());
+    a.low = {-1.0 / 3, -2, -3, -4, -5, -6};
+    a.high = {1.0 / 7, 2, 3, 4, 5, 6};
+    const MotionFormat b = io::motion_format_from_json(nlohmann::json::parse(io::to_json(a).dump()));
+    CHECK(b.layout.root_rotation() == form);
+    CHECK(b.low == a.low);
+    CHECK(b.high == a.high);
+  }
+  MotionFormat ranged = small_format();
+  ranged.low.assign(6, -1);
+  ranged.high.assign(6, 1);
+  const nlohmann::json good = io::to_json(ranged);
+  const auto refused = [&](const char* key, const nlohmann::json& value) {
+    nlohmann::json bad = good;
+    if (value.is_null())
+      bad.erase(key);
+    else
+      bad[key] = value;
+    return testing::message_of([&] { io::motion_format_from_json(bad); });
+  };
+  CHECK(testing::says(refused("high", nullptr), "no 'high'"));
+  CHECK(testing::says(refused("low", nullptr), "no 'low'"));
+  CHECK(testing::says(refused("low", nlohmann::json::array()), "'low' is empty"));
+  CHECK(testing::says(refused("high", {1, 2}), "has 6 and 2 values, expected 6 each"));
+  CHECK(testing::says(refused("low", std::vector<double>(6, 1.5)), "dimension 0 is from 1.5 to 1"));
+  CHECK(testing::says(refused("low", "x"), "'low' is string, expected numbers"));
+}
+
 TEST_CASE("normalised zeros are the mean pose, dropped dimensions too") {
   const MotionFormat format = small_format();
   const std::vector<float> zeros(2 * format.dof(), 0.0f);
@@ -83,6 +118,7 @@ TEST_CASE("a broken description is refused with what is wrong") {
       {"skeleton", 3, "'skeleton' is number, expected HIERARCHY text"},
       {"skeleton", "HIERARCHY\nROOT a\n{\n  OFFSET 1 2\n}", "skeleton of the model:5:1"},
       {"root", "Nose", "root 'Nose' is not a joint"},
+      {"root_rotation", "euler", "\"euler\", expected \"expmap\", \"heading\" or \"velocity\""},
       {"root_position", 1, "'root_position' is number, expected true or false"},
       {"root_position", false, "normalizer of 12 dimensions does not fit a pose of 9"},
       {"rate", 0, "rate of 0"},

@@ -32,6 +32,25 @@ inline Motion walk(double seconds, double rate, double speed, double start = 0) 
   return m;
 }
 
+/// Someone who walks along a curve at 10 frames a second and leans forward, recorded at any place and heading
+/// of the room.
+inline Motion curved_walk(double heading, const Vec3& place, std::size_t frames) {
+  Motion m;
+  m.skeleton.joints = {{"Hips", -1, {}, {}, {}}, {"Spine", 0, {0, 1, 0}, {}, {}}};
+  m.rate = 10;
+  m.frames = frames;
+  Vec3 at = place;
+  for (std::size_t f = 0; f < frames; ++f) {
+    const double t = 0.1 * static_cast<double>(f), yaw = heading + 0.9 * t;
+    m.rotations.push_back(multiply(axis_rotation(1, yaw), axis_rotation(0, 0.2 + 0.1 * std::sin(3 * t))));
+    m.rotations.push_back(axis_rotation(2, 0.3 * std::cos(2 * t)));
+    m.positions.push_back(at);
+    m.positions.push_back({0, 1, 0});
+    at = add(at, {0.1 * std::sin(yaw), 0.01 * std::cos(t), 0.1 * std::cos(yaw)});
+  }
+  return m;
+}
+
 inline std::vector<LabelledMotion> several(std::size_t count) {
   std::vector<LabelledMotion> out;
   for (std::size_t i = 0; i < count; ++i)

@@ -96,7 +96,7 @@ inline EncodedClip encode_clip(Motion motion, const DatasetOptions& options, std
   out.frames = motion.frames;
   out.poses = PoseLayout(out.skeleton, options.root_position, static_cast<std::size_t>(out.root),
                          options.root_rotation)
-                  .encode(motion);
+                  .encode(motion, out.stride);
   return out;
 }
 

@@ -1,6 +1,5 @@
 // Captioned clips cut into windows for training (SPEC section 6).
 #pragma once
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -40,7 +39,9 @@ struct SkippedClip {
 /// a window is drawn: value[start + i * stride] - value[start]. Where the layout has a yaw, x and z are then
 /// turned back by the yaw of the window's first frame: every window begins at the origin and faces the same
 /// way, wherever and whichever way it was recorded. All other dimensions are normalised by mean and deviation
-/// over all frames of the training clips.
+/// over all frames of the training clips. With RootRotation::velocity nothing is relative: steps and turns
+/// are those over `stride` frames of the clip, the distance of a window's frames; those of a window's first
+/// frame lead to it from the frame before the window.
 class Dataset {
  public:
   MotionFormat format;  ///< skeleton of the first clip used, statistics and vocabulary of the training clips
@@ -81,17 +82,7 @@ class Dataset {
             " numbers, found room for ", out.size());
     for (std::size_t i = 0; i < format.frames; ++i)
       for (std::size_t k = 0; k < dof; ++k) out[i * dof + k] = clip.poses[(start + i * stride) * dof + k];
-    const auto turning = format.turning();
-    const double yaw = turning ? clip.poses[start * dof + turning->yaw] * turning->yaw_scale : 0;
-    // The first row is needed for all: it becomes zero last.
-    for (std::size_t i = format.frames; i-- > 0;) {
-      for (const std::size_t k : format.relative_dims) out[i * dof + k] -= out[k];
-      if (!turning) continue;
-      float &x = out[i * dof + turning->x], &z = out[i * dof + turning->z];
-      const double cosine = std::cos(yaw), sine = std::sin(yaw), old_x = x, old_z = z;
-      x = static_cast<float>(cosine * old_x - sine * old_z);
-      z = static_cast<float>(sine * old_x + cosine * old_z);
-    }
+    format.make_relative(out);
   }
 
   /// Motion of a window's poses.

@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -107,7 +109,8 @@ inline std::vector<std::string> captions_of(const ClipSource& source, const Capt
   return out;
 }
 
-/// Mean and deviation of the training clips; for the root's x, z and yaw those of windows.
+/// Mean and deviation of the training clips; for the root's x, z and yaw, unless they are steps and turns,
+/// those of windows.
 inline Normalizer fit_normalizer(const std::vector<Used>& used, const std::vector<bool>& is_train,
                                  const PoseLayout& layout, std::size_t frames, std::size_t stride) {
   const std::size_t dof = layout.dof();
@@ -129,11 +132,11 @@ inline Normalizer fit_normalizer(const std::vector<Used>& used, const std::vecto
   for (double& s : std) s = std::sqrt(s / static_cast<double>(rows));
 
   // Dimensions that count from a window's first frame: mean 0, root mean square over all windows. x and z
-  // share theirs where windows are turned, so that a turn stays a turn.
-  const bool turned = layout.root_rotation() == RootRotation::heading;
+  // share theirs where windows are turned or hold steps, so that a turn stays a turn.
   std::vector<std::size_t> relative;
-  if (layout.root_position()) relative = {layout.position_dim(), layout.position_dim() + 2};
-  if (turned) relative.push_back(layout.yaw_dim());
+  if (layout.root_position() && !layout.has_steps())
+    relative = {layout.position_dim(), layout.position_dim() + 2};
+  if (layout.has_yaw() && !layout.has_steps()) relative.push_back(layout.yaw_dim());
   for (const std::size_t d : relative) {
     double squares = 0, count = 0;
     for (std::size_t c = 0; c < used.size(); ++c) {
@@ -150,11 +153,43 @@ inline Normalizer fit_normalizer(const std::vector<Used>& used, const std::vecto
     mean[d] = 0;
     std[d] = std::sqrt(squares / count);
   }
-  if (turned && layout.root_position()) {
+  if (layout.has_yaw() && layout.root_position()) {
     double &x = std[layout.position_dim()], &z = std[layout.position_dim() + 2];
     x = z = std::sqrt((x * x + z * z) / 2);
   }
   return Normalizer(std::move(mean), std::move(std));
+}
+
+/// The range of the training windows: over all frames, and for relative dimensions over windows; where a clip
+/// has more than 200 window starts, over at most 200 of them, evenly spread.
+inline void fit_range(Dataset& data) {
+  MotionFormat& format = data.format;
+  const std::size_t dof = format.dof();
+  const auto& relative = format.relative_dims;
+  std::vector<float> low(dof, std::numeric_limits<float>::max()),
+      high(dof, std::numeric_limits<float>::lowest());
+  const auto widen = [&](std::size_t k, float value) {
+    low[k] = std::min(low[k], value);
+    high[k] = std::max(high[k], value);
+  };
+  for (const DatasetClip& clip : data.train)
+    for (std::size_t i = 0; i < clip.poses.size(); ++i) widen(i % dof, clip.poses[i]);
+  for (const std::size_t k : relative) low[k] = high[k] = 0;  // every window's first frame
+  std::vector<float> window(format.frames * dof);             // only relative dimensions are filled in
+  for (const DatasetClip& clip : data.train) {
+    if (relative.empty()) break;
+    const std::size_t starts = data.starts(clip), leap = (starts + 199) / 200;
+    for (std::size_t start = 0; start < starts; start += leap) {
+      for (std::size_t i = 0; i < format.frames; ++i)
+        for (const std::size_t k : relative)
+          window[i * dof + k] = clip.poses[(start + i * data.stride) * dof + k];
+      format.make_relative(std::span<float>(window));
+      for (std::size_t i = 0; i < format.frames; ++i)
+        for (const std::size_t k : relative) widen(k, window[i * dof + k]);
+    }
+  }
+  format.low.assign(low.begin(), low.end());
+  format.high.assign(high.begin(), high.end());
 }
 
 inline Dataset build(const std::vector<ClipSource>& sources, const DatasetOptions& options) {
@@ -182,13 +217,13 @@ inline Dataset build(const std::vector<ClipSource>& sources, const DatasetOption
   format.normalizer = fit_normalizer(used, is_train, format.layout, options.frames, data.stride);
   const auto& kept = format.normalizer.kept();
   const PoseLayout& layout = format.layout;
-  for (std::size_t k = 0; k < kept.size(); ++k) {
+  for (std::size_t k = 0; k < kept.size() && !layout.has_steps(); ++k) {
     const bool ground =
         options.root_position && (kept[k] == layout.position_dim() || kept[k] == layout.position_dim() + 2);
-    const bool yaw = options.root_rotation == RootRotation::heading && kept[k] == layout.yaw_dim();
+    const bool yaw = layout.has_yaw() && kept[k] == layout.yaw_dim();
     if (ground || yaw) format.relative_dims.push_back(k);
   }
-  format.check();
+  format.check();  // before clips are normalised: something must move
 
   std::vector<std::string> training_captions;
   for (std::size_t c = 0; c < used.size(); ++c) {
@@ -201,6 +236,8 @@ inline Dataset build(const std::vector<ClipSource>& sources, const DatasetOption
       training_captions.insert(training_captions.end(), clip.captions.begin(), clip.captions.end());
     (is_train[c] ? data.train : data.test).push_back(std::move(clip));
   }
+  fit_range(data);
+  format.check();
   format.vocabulary = Vocabulary::from_captions(training_captions);
   for (auto* part : {&data.train, &data.test})
     for (DatasetClip& clip : *part)

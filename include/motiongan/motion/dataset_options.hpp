@@ -14,7 +14,7 @@ struct DatasetOptions {
   double rate = 4.0;                 ///< frames per second of a window
   std::filesystem::path captions{};  ///< lines of `clip id <TAB> description`; empty: captions from names
   bool root_position = true;         ///< whether the root's position is part of a pose
-  RootRotation root_rotation = RootRotation::heading;  ///< the papers: expmap
+  RootRotation root_rotation = RootRotation::heading;  ///< the papers: expmap; for long motion: velocity
   double train_share = 0.67;                           ///< of the clips; the rest is for testing
   std::uint64_t split_seed = 1;
   FirstFrame first_frame = FirstFrame::automatic;  ///< for BVH files

@@ -1,0 +1,81 @@
+// Whether two skeletons have the same joints, and if not, in what they differ.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "motiongan/core/error.hpp"
+#include "motiongan/motion/skeleton.hpp"
+
+namespace motiongan::motion {
+
+/// What is different in `other`, one joint an entry: missing, extra, renamed (another name at the same place
+/// and below the same parent), below another parent, or, where nothing else differs, in another order. Empty
+/// where a pose of one skeleton is a pose of the other. Offsets and channels may differ.
+inline std::vector<std::string> joint_differences(const Skeleton& expected, const Skeleton& other) {
+  const auto parent_of = [](const Skeleton& s, std::size_t j) {
+    const int parent = s.joints[j].parent;
+    return parent < 0 ? std::string() : s.joints[static_cast<std::size_t>(parent)].name;
+  };
+  const auto described = [](const std::string& parent) {
+    return parent.empty() ? std::string("no parent") : "parent '" + parent + "'";
+  };
+  const std::size_t common = std::min(expected.size(), other.size());
+  bool same = expected.size() == other.size();
+  for (std::size_t j = 0; same && j < common; ++j)
+    same = expected.joints[j].name == other.joints[j].name &&
+           expected.joints[j].parent == other.joints[j].parent;
+  if (same) return {};
+
+  const auto renamed = [&](std::size_t j) {
+    return j < common && expected.joints[j].parent == other.joints[j].parent &&
+           other.find(expected.joints[j].name) < 0 && expected.find(other.joints[j].name) < 0;
+  };
+  std::vector<std::string> out;
+  for (std::size_t j = 0; j < expected.size(); ++j) {
+    const std::string& name = expected.joints[j].name;
+    const int at = other.find(name);
+    if (renamed(j)) {
+      out.push_back("'" + name + "' is called '" + other.joints[j].name + "'");
+    } else if (at < 0) {
+      out.push_back("'" + name + "' is missing");
+    } else {
+      const std::string wanted = parent_of(expected, j),
+                        found = parent_of(other, static_cast<std::size_t>(at));
+      const int p = expected.joints[j].parent;
+      const bool only_named = p >= 0 && renamed(static_cast<std::size_t>(p)) &&
+                              other.joints[static_cast<std::size_t>(p)].name == found;
+      if (wanted != found && !only_named)
+        out.push_back("'" + name + "' has " + described(found) + ", expected " + described(wanted));
+    }
+  }
+  for (std::size_t j = 0; j < other.size(); ++j)
+    if (expected.find(other.joints[j].name) < 0 && !renamed(j))
+      out.push_back("'" + other.joints[j].name + "' is extra");
+  const bool only_order = out.empty();
+  for (std::size_t j = 0; only_order && j < common; ++j)
+    if (expected.joints[j].name != other.joints[j].name)
+      out.push_back("joint " + std::to_string(j) + " is '" + other.joints[j].name + "', expected '" +
+                    expected.joints[j].name + "': another order");
+  if (out.empty())
+    out.push_back(concat(other.size(), " joints, expected ", expected.size(), ": several share a name"));
+  return out;
+}
+
+/// Error that lists the first eight differences; `what` is what the message calls the other skeleton's owner,
+/// such as "the prior walk.bvh".
+inline void require_same_joints(const Skeleton& expected, const Skeleton& other, const std::string& what) {
+  const std::vector<std::string> differences = joint_differences(expected, other);
+  if (differences.empty()) return;
+  constexpr std::size_t shown = 8;
+  std::string list;
+  for (std::size_t i = 0; i < std::min(differences.size(), shown); ++i)
+    list += (i > 0 ? "; " : "") + differences[i];
+  if (differences.size() > shown) list += concat("; and ", differences.size() - shown, " more");
+  throw Error(what, " has another skeleton (", other.size(), " joints, expected ", expected.size(),
+              "): ", list,
+              ". Use motion of the skeleton that the model was trained on; bone lengths may differ");
+}
+
+}  // namespace motiongan::motion
