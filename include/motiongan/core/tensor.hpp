@@ -162,6 +162,17 @@ inline void add_argument(KernelArguments& to, const Tensor& tensor) {
   add_argument(to, tensor.offset());
 }
 inline void add_argument(KernelArguments& to, const Indices& indices) { to.set(indices.buffer()); }
+
+/// A tensor from one of its elements on, as a kernel argument; cheaper than a view.
+struct At {
+  const Tensor& tensor;
+  std::size_t first;
+  std::string describe() const { return concat(tensor.describe(), "+", first); }
+};
+inline void add_argument(KernelArguments& to, const At& at) {
+  to.set(at.tensor.buffer());
+  add_argument(to, at.tensor.offset() + at.first);
+}
 }  // namespace detail
 
 }  // namespace motiongan

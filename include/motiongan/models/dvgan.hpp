@@ -2,18 +2,28 @@
 // both.
 #pragma once
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <variant>
 
 #include "motiongan/io/motion_format_json.hpp"
 #include "motiongan/io/state_dict.hpp"
 #include "motiongan/models/cnn_generator.hpp"
+#include "motiongan/models/rnn_stream.hpp"
 
 namespace motiongan {
 
+/// Which network makes the motion: the CNN makes a window of N frames at once, coarse to fine; the RNN goes
+/// on frame by frame, for as long as one likes, and can continue a given motion.
+enum class Generator { cnn, rnn };
+
 struct DvganOptions {
-  std::size_t hidden = 256;  ///< k
-  std::size_t taps = 3;      ///< of the convolutions: 3 or 5
-  bool final_cut = true;     ///< make 2N frames, keep N
-  std::uint64_t seed = 1;    ///< of the first weights
+  Generator generator = Generator::cnn;
+  std::size_t hidden = 256;            ///< k
+  std::size_t taps = 3;                ///< of the CNN's convolutions: 3 or 5
+  std::optional<bool> final_cut = {};  ///< make 2N frames, keep N; not set: on for the CNN, off for the RNN
+  std::uint64_t seed = 1;              ///< of the first weights
+
+  bool cuts() const { return final_cut.value_or(generator == Generator::cnn); }
 };
 
 struct GenerateOptions {
@@ -21,6 +31,7 @@ struct GenerateOptions {
   std::uint64_t seed =
       1;  ///< another seed is another motion; the same one gives the same motion on the same device
   std::size_t first_sample = 0;  ///< sample i of a seed is the same whatever the count
+  std::size_t frames = 0;        ///< of each motion; 0: the model's N. Others need an RNN generator
 };
 
 /// A text-conditioned generator of motion (Lin & Amer; SPEC 2).
@@ -30,43 +41,74 @@ class Dvgan {
       : context_(context),
         format_(std::move(format)),
         options_(options),
-        generator_(Initializer(context, options.seed), {.vocabulary = format_.vocabulary.size(),
-                                                        .dof = format_.dof(),
-                                                        .frames = format_.frames,
-                                                        .hidden = options.hidden,
-                                                        .taps = options.taps,
-                                                        .final_cut = options.final_cut}) {}
+        generator_(make_generator(context, format_, options)) {}
 
   const Context& context() const { return context_; }
   const motion::MotionFormat& format() const { return format_; }
   const DvganOptions& options() const { return options_; }
-  CnnGenerator& generator() { return generator_; }
-  const CnnGenerator& generator() const { return generator_; }
+
+  bool is_recurrent() const { return options_.generator == Generator::rnn; }
+  const CnnGenerator& cnn() const {
+    require(!is_recurrent(), "this model has an RNN generator, a CNN generator was asked for");
+    return std::get<CnnGenerator>(generator_);
+  }
+  /// The generator that goes on frame by frame: Error where the model has the other one.
+  const RnnGenerator& rnn() const {
+    require(
+        is_recurrent(), "this model has a CNN generator, which makes its ", format_.frames,
+        " frames at once: it cannot complete a motion, go on for longer or be asked frame by frame. Train a "
+        "model with an RNN generator for that (motiongan train dvgan --generator rnn)");
+    return std::get<RnnGenerator>(generator_);
+  }
+
+  /// Parameters by PyTorch's names.
+  void list_parameters(ParameterList& list) {
+    std::visit([&](auto& generator) { generator.list_parameters(list); }, generator_);
+  }
+
+  /// Motion [N, B, M], normalised, for a batch of sentences; what training makes its fakes with.
+  Var make(const Sentences& text, const RandomKey& key) const {
+    if (is_recurrent()) {
+      const RnnGenerator& generator = rnn();
+      return generator(text, generator.noise(context_, key, text.batch, generator.frames_made()),
+                       generator.cuts(context_, key, text.batch));
+    }
+    const Indices cut = cnn().cuts(context_, key, text.batch);
+    return cnn()(text, cnn().noise(context_, key, text.batch, cut), cut);
+  }
 
   /// Normalised poses of `count` motions, each [frames, dof], one after the other. A caption without a word
-  /// is an Error; words that the training captions did not have count as unknown.
+  /// is an Error; words that the training captions did not have count as unknown. A motion that is not of N
+  /// frames is not cut out of a longer one.
   std::vector<std::vector<float>> generate_poses(const std::string& caption,
                                                  const GenerateOptions& options) const {
     const NoGrad values_only;
     const std::vector<int> sentence = format_.vocabulary.encode(caption);
-    const std::size_t frames = format_.frames, dof = format_.dof();
-    std::vector<std::vector<float>> all;
-    constexpr std::size_t most = 64;  // samples at a time
+    const std::size_t frames = options.frames > 0 ? options.frames : format_.frames, dof = format_.dof();
+    if (frames != format_.frames) rnn();  // refuses where there is none
+    std::vector<std::vector<float>> all(options.count, std::vector<float>(frames * dof));
+    constexpr std::size_t most = 64, piece = 64;  // samples and frames at a time
     for (std::size_t first = 0; first < options.count; first += most) {
       const std::size_t batch = std::min(most, options.count - first);
-      const RandomKey key{.seed = options.seed,
-                          .first_sample = static_cast<std::uint32_t>(options.first_sample + first)};
-      const Sentences text(context_, std::vector<std::vector<int>>(batch, sentence),
-                           format_.vocabulary.size());
-      const Indices cut = generator_.cuts(context_, key, batch);
-      const Var motion = generator_(text, generator_.noise(context_, key, batch, cut), cut);
-      const std::vector<float> values = motion.value().to_host();
-      for (std::size_t b = 0; b < batch; ++b) {
-        std::vector<float> poses(frames * dof);
-        for (std::size_t t = 0; t < frames; ++t)
-          std::copy_n(values.begin() + static_cast<std::ptrdiff_t>((t * batch + b) * dof), dof,
-                      poses.begin() + static_cast<std::ptrdiff_t>(t * dof));
-        all.push_back(std::move(poses));
+      const auto first_sample = static_cast<std::uint32_t>(options.first_sample + first);
+      const auto keep = [&](std::span<const float> values, std::size_t from) {  // [some frames, batch, dof]
+        for (std::size_t row = 0; row < values.size() / dof; ++row)
+          std::copy_n(
+              values.begin() + static_cast<std::ptrdiff_t>(row * dof), dof,
+              all[first + row % batch].begin() + static_cast<std::ptrdiff_t>((from + row / batch) * dof));
+      };
+      if (is_recurrent() && !(options_.cuts() && frames == format_.frames)) {
+        RnnStream stream(rnn());
+        std::vector<StreamStart> starts;
+        for (std::size_t b = 0; b < batch; ++b)
+          starts.push_back({sentence, options.seed, first_sample + static_cast<std::uint32_t>(b)});
+        stream.add(starts);
+        for (std::size_t at = 0; at < frames; at += piece)
+          keep(stream.step(std::min(piece, frames - at)), at);
+      } else {
+        const Sentences text(context_, std::vector<std::vector<int>>(batch, sentence),
+                             format_.vocabulary.size());
+        keep(make(text, {.seed = options.seed, .first_sample = first_sample}).value().to_host(), 0);
       }
     }
     return all;
@@ -85,7 +127,7 @@ class Dvgan {
   void save(const std::filesystem::path& path) {
     io::SafeTensors file;
     describe(file);
-    io::save_parameters(named_parameters(generator_), file);
+    io::save_parameters(named_parameters(*this), file);
     file.write(path);
   }
 
@@ -95,19 +137,16 @@ class Dvgan {
     const io::SafeTensors file = io::SafeTensors::read(path);
     Dvgan model = from_description(context, file, path.string());
     const bool is_checkpoint = file.tensors.contains("generator.decode.weight");
-    io::load_parameters(named_parameters(model.generator_), file, path.string(),
-                        is_checkpoint ? "generator." : "");
+    io::load_parameters(named_parameters(model), file, path.string(), is_checkpoint ? "generator." : "");
     return model;
   }
 
   /// Adds the metadata of a model file: which model it is, its options and its motion format.
   void describe(io::SafeTensors& file) const {
-    file.metadata["motiongan_model"] = model_name;
-    file.metadata["options"] = nlohmann::json{
-        {"hidden", options_.hidden},
-        {"taps", options_.taps},
-        {"final_cut",
-         options_.final_cut}}.dump();
+    file.metadata["motiongan_model"] = is_recurrent() ? rnn_name : cnn_name;
+    nlohmann::json options{{"hidden", options_.hidden}, {"final_cut", options_.cuts()}};
+    if (!is_recurrent()) options["taps"] = options_.taps;
+    file.metadata["options"] = options.dump();
     file.metadata["format"] = io::to_json(format_).dump();
   }
 
@@ -117,13 +156,14 @@ class Dvgan {
     const auto found = file.metadata.find("motiongan_model");
     require(found != file.metadata.end(), where,
             ": not a motiongan model (no \"motiongan_model\" in its metadata)");
-    require(found->second == model_name, where, ": holds a model called \"", found->second, "\", expected ",
-            model_name);
+    require(found->second == cnn_name || found->second == rnn_name, where, ": holds a model called \"",
+            found->second, "\", expected ", cnn_name, " or ", rnn_name);
     try {
       const auto options = nlohmann::json::parse(file.metadata.at("options"));
       DvganOptions read;
+      read.generator = found->second == rnn_name ? Generator::rnn : Generator::cnn;
       read.hidden = options.at("hidden").get<std::size_t>();
-      read.taps = options.at("taps").get<std::size_t>();
+      if (read.generator == Generator::cnn) read.taps = options.at("taps").get<std::size_t>();
       read.final_cut = options.at("final_cut").get<bool>();
       require(read.hidden > 0 && read.hidden <= 65536 && (read.taps == 3 || read.taps == 5), "hidden ",
               read.hidden, " or taps ", read.taps, " is out of range");
@@ -136,13 +176,32 @@ class Dvgan {
     }
   }
 
-  static constexpr const char* model_name = "dvgan_cnn_generator";
+  static constexpr const char *cnn_name = "dvgan_cnn_generator", *rnn_name = "dvgan_rnn_generator";
 
  private:
+  using Network = std::variant<CnnGenerator, RnnGenerator>;
+
+  static Network make_generator(const Context& context, const motion::MotionFormat& format,
+                                const DvganOptions& options) {
+    const Initializer init(context, options.seed);
+    if (options.generator == Generator::rnn)
+      return RnnGenerator(init, {.vocabulary = format.vocabulary.size(),
+                                 .dof = format.dof(),
+                                 .frames = format.frames,
+                                 .hidden = options.hidden,
+                                 .final_cut = options.cuts()});
+    return CnnGenerator(init, {.vocabulary = format.vocabulary.size(),
+                               .dof = format.dof(),
+                               .frames = format.frames,
+                               .hidden = options.hidden,
+                               .taps = options.taps,
+                               .final_cut = options.cuts()});
+  }
+
   Context context_;
   motion::MotionFormat format_;
   DvganOptions options_;
-  CnnGenerator generator_;
+  Network generator_;
 };
 
 }  // namespace motiongan

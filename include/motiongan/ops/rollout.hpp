@@ -45,8 +45,6 @@ struct RolloutTrace {
   Tensor rows, gates0, gates1, c0, c1;
 };
 
-inline Tensor from(const Tensor& t, std::size_t first) { return t.view(first, {t.size() - first}); }
-
 inline RolloutTrace rollout_forward(const Tensor& given, const Tensor& x_gates, const RolloutWeights& w) {
   const Context& context = given.context();
   const std::size_t k = w.diff.dim(1), batch = given.dim(1), frames = x_gates.dim(0) + 1;
@@ -81,15 +79,15 @@ inline RolloutTrace rollout_forward(const Tensor& given, const Tensor& x_gates, 
     first.a_offset[0] = s.pose_at(t - 1);
     first.c_offset = first.residual_offset = s.gates_at(t);
     gemm(context, first);
-    context.launch("rollout", "rollout_cell", s.cells(context), from(trace.gates0, s.gates_at(t)),
-                   from(trace.c0, s.state_at(t - 1)), from(trace.rows, s.h0_at(t)), s.width(),
-                   from(trace.c0, s.state_at(t)), batch, k);
+    context.launch("rollout", "rollout_cell", s.cells(context), At{trace.gates0, s.gates_at(t)},
+                   At{trace.c0, s.state_at(t - 1)}, At{trace.rows, s.h0_at(t)}, s.width(),
+                   At{trace.c0, s.state_at(t)}, batch, k);
     second.a_offset[0] = s.h0_at(t);
     second.c_offset = s.gates_at(t);
     gemm(context, second);
-    context.launch("rollout", "rollout_cell", s.cells(context), from(trace.gates1, s.gates_at(t)),
-                   from(trace.c1, s.state_at(t - 1)), from(trace.rows, s.h1_at(t)), s.width(),
-                   from(trace.c1, s.state_at(t)), batch, k);
+    context.launch("rollout", "rollout_cell", s.cells(context), At{trace.gates1, s.gates_at(t)},
+                   At{trace.c1, s.state_at(t - 1)}, At{trace.rows, s.h1_at(t)}, s.width(),
+                   At{trace.c1, s.state_at(t)}, batch, k);
     if (t < s.given) continue;
     move.a_offset[0] = s.h1_at(t);
     move.c_offset = s.pose_at(t);
@@ -126,18 +124,17 @@ inline std::vector<Var> rollout_backward(const RolloutTrace& trace, const Node& 
       move.c_offset = s.h1_at(t);
       gemm(context, move);
       context.launch("rollout", "add_rows", Grid::items(batch * vectors(context, s.dof)),
-                     from(rows, s.pose_at(t)), s.width(), from(rows, s.pose_at(t - 1)), s.width(), batch,
-                     s.dof);
+                     At{rows, s.pose_at(t)}, s.width(), At{rows, s.pose_at(t - 1)}, s.width(), batch, s.dof);
     }
-    context.launch("rollout", "rollout_cell_backward", s.cells(context), from(trace.gates1, s.gates_at(t)),
-                   from(trace.c1, s.state_at(t)), from(trace.c1, s.state_at(t - 1)), from(rows, s.h1_at(t)),
-                   s.width(), dc1, from(gates1, s.gates_at(t)), batch, k);
+    context.launch("rollout", "rollout_cell_backward", s.cells(context), At{trace.gates1, s.gates_at(t)},
+                   At{trace.c1, s.state_at(t)}, At{trace.c1, s.state_at(t - 1)}, At{rows, s.h1_at(t)},
+                   s.width(), dc1, At{gates1, s.gates_at(t)}, batch, k);
     second.a_offset[0] = s.gates_at(t);
     second.c_offset = s.h0_at(t);
     gemm(context, second);
-    context.launch("rollout", "rollout_cell_backward", s.cells(context), from(trace.gates0, s.gates_at(t)),
-                   from(trace.c0, s.state_at(t)), from(trace.c0, s.state_at(t - 1)), from(rows, s.h0_at(t)),
-                   s.width(), dc0, from(gates0, s.gates_at(t)), batch, k);
+    context.launch("rollout", "rollout_cell_backward", s.cells(context), At{trace.gates0, s.gates_at(t)},
+                   At{trace.c0, s.state_at(t)}, At{trace.c0, s.state_at(t - 1)}, At{rows, s.h0_at(t)},
+                   s.width(), dc0, At{gates0, s.gates_at(t)}, batch, k);
     first.a_offset[0] = s.gates_at(t);
     first.c_offset = s.pose_at(t - 1);
     gemm(context, first);
