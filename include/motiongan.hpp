@@ -25,6 +25,7 @@
 #include "motiongan/optim/adam.hpp"
 //
 #include "motiongan/motion/bvh.hpp"
+#include "motiongan/motion/bvh_stream.hpp"
 #include "motiongan/motion/dataset.hpp"
 #include "motiongan/motion/kinematics.hpp"
 #include "motiongan/motion/motion.hpp"

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -90,29 +91,54 @@ inline std::string format_hierarchy(const Skeleton& skeleton) {
   return out;
 }
 
+namespace bvh_detail {
+
+/// All of a BVH file but its frames. `id` is what messages call the clip.
+inline std::string format_header(const Skeleton& skeleton, std::size_t frames, double frame_time,
+                                 const std::string& id) {
+  require(std::isfinite(frame_time) && frame_time >= 1e-6, "clip '", id, "' has a frame time of ", frame_time,
+          " seconds, expected at least 0.000001");
+  require(skeleton.channel_count() > 0 || frames == 0, "clip '", id, "' has frames but no channels");
+  std::string out = format_hierarchy(skeleton);
+  out += "MOTION\nFrames: " + std::to_string(frames) + "\nFrame Time: ";
+  append_number(out, frame_time);
+  out += '\n';
+  return out;
+}
+
+/// Error unless all channels [frames, width] are finite; the first of them belong to frame `first` of `id`.
+inline void check_finite(std::span<const double> channels, std::size_t width, std::size_t first,
+                         const std::string& id) {
+  for (std::size_t i = 0; i < channels.size(); ++i)
+    require(std::isfinite(channels[i]), "clip '", id, "', frame ", first + i / width + 1, ", channel ",
+            i % width + 1, " is ", channels[i], "; BVH holds finite numbers only");
+}
+
+/// Appends the lines of channels [frames, width].
+inline void append_frames(std::string& out, std::span<const double> channels, std::size_t width) {
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    append_number(out, channels[i]);
+    out += (i + 1) % width == 0 ? '\n' : ' ';
+  }
+}
+
+/// To six decimals, the way motions are written.
+inline void round_channels(std::vector<double>& channels) {
+  for (double& v : channels)
+    if (std::abs(v) < 1e9) v = std::round(v * 1e6) / 1e6;
+}
+
+}  // namespace bvh_detail
+
 /// The whole BVH text of a clip; every number reads back as the same double.
 inline std::string format_bvh(const Clip& clip) {
   const std::size_t width = clip.skeleton.channel_count();
   require(clip.channels.size() == clip.frames * width, "clip '", clip.id, "' has ", clip.channels.size(),
           " values, expected ", clip.frames, " frames x ", width, " channels");
-  require(std::isfinite(clip.frame_time) && clip.frame_time >= 1e-6, "clip '", clip.id,
-          "' has a frame time of ", clip.frame_time, " seconds, expected at least 0.000001");
-  require(width > 0 || clip.frames == 0, "clip '", clip.id, "' has frames but no channels");
-  std::string out = format_hierarchy(clip.skeleton);
-  out.reserve(out.size() + 64 + clip.channels.size() * 11);
-  out += "MOTION\nFrames: " + std::to_string(clip.frames) + "\nFrame Time: ";
-  bvh_detail::append_number(out, clip.frame_time);
-  out += '\n';
-  for (std::size_t f = 0; f < clip.frames; ++f) {
-    for (std::size_t i = 0; i < width; ++i) {
-      const double value = clip.channels[f * width + i];
-      require(std::isfinite(value), "clip '", clip.id, "', frame ", f + 1, ", channel ", i + 1, " is ", value,
-              "; BVH holds finite numbers only");
-      if (i > 0) out += ' ';
-      bvh_detail::append_number(out, value);
-    }
-    out += '\n';
-  }
+  std::string out = bvh_detail::format_header(clip.skeleton, clip.frames, clip.frame_time, clip.id);
+  out.reserve(out.size() + clip.channels.size() * 11);
+  bvh_detail::check_finite(clip.channels, width, 0, clip.id);
+  bvh_detail::append_frames(out, clip.channels, width);
   return out;
 }
 
@@ -123,8 +149,7 @@ inline void write_bvh(const std::filesystem::path& path, const Clip& clip) {
 /// Writes a motion in its skeleton's own channels, rounded to six decimals (degrees and length units).
 inline void write_bvh(const std::filesystem::path& path, const Motion& motion) {
   Clip clip = to_clip(motion, path.stem().string());
-  for (double& v : clip.channels)
-    if (std::abs(v) < 1e9) v = std::round(v * 1e6) / 1e6;
+  bvh_detail::round_channels(clip.channels);
   write_bvh(path, clip);
 }
 

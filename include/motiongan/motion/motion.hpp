@@ -56,35 +56,57 @@ inline Motion to_motion(const Clip& clip) {
   return motion;
 }
 
-/// The motion in its skeleton's own channels: Euler angles in each joint's order, continuous over time. What
-/// a joint has no channel for is left out (a rotation about a missing axis, a position without position
-/// channels).
+/// Local rotations as Euler angles in each joint's order, continuous over all the frames that it was ever
+/// given: a motion may come in pieces. What a joint has no channel for is left out (a rotation about a
+/// missing axis, a position without position channels).
+class ChannelEncoder {
+ public:
+  explicit ChannelEncoder(const Skeleton& skeleton) : previous_(skeleton.size(), Vec3{}) {
+    for (const Joint& j : skeleton.joints) {
+      channels_.push_back(j.channels);
+      orders_.emplace_back(j.channels);
+    }
+  }
+
+  /// Appends the motion's channels [frames, channels] to `out`: degrees and length units, as in a Clip. Error
+  /// if the motion has another number of joints.
+  void append(const Motion& motion, std::vector<double>& out) {
+    check_motion(motion);
+    require(motion.skeleton.size() == orders_.size(), "a motion of ", motion.skeleton.size(),
+            " joints does not fit the channels of ", orders_.size(), " joints");
+    for (std::size_t f = 0; f < motion.frames; ++f, started_ = true) {
+      for (std::size_t j = 0; j < orders_.size(); ++j) {
+        const Quat& q = motion.rotation(f, j);
+        // The first frame has nothing to be continuous with: it takes the smallest angles.
+        const Vec3 angles =
+            started_ ? euler_from_quat_near(orders_[j], q, previous_[j]) : euler_from_quat(orders_[j], q);
+        previous_[j] = angles;
+        std::size_t turn = 0;
+        for (const Channel c : channels_[j])
+          out.push_back(is_rotation(c) ? degrees(angles[turn++]) : motion.position(f, j)[axis(c)]);
+      }
+    }
+  }
+
+ private:
+  std::vector<std::vector<Channel>> channels_;  // of each joint
+  std::vector<EulerOrder> orders_;
+  std::vector<Vec3> previous_;  // angles of the frame before, [joints]
+  bool started_ = false;
+};
+
+/// The motion in its skeleton's own channels, see ChannelEncoder.
 inline Clip to_clip(const Motion& motion, std::string id) {
   check_motion(motion);
   require(motion.rate > 0, "motion '", id, "' has a rate of ", motion.rate,
           " frames per second, expected more than 0");
-  const std::size_t joints = motion.skeleton.size(), width = motion.skeleton.channel_count();
   Clip clip;
   clip.id = std::move(id);
   clip.skeleton = motion.skeleton;
   clip.frame_time = 1.0 / motion.rate;
   clip.frames = motion.frames;
-  clip.channels.reserve(motion.frames * width);
-  std::vector<EulerOrder> orders;
-  for (const Joint& j : motion.skeleton.joints) orders.emplace_back(j.channels);
-  std::vector<Vec3> previous(joints, Vec3{});  // angles of the frame before, [joints]
-  for (std::size_t f = 0; f < motion.frames; ++f) {
-    for (std::size_t j = 0; j < joints; ++j) {
-      const Quat& q = motion.rotation(f, j);
-      // The first frame has nothing to be continuous with: it takes the smallest angles.
-      const Vec3 angles =
-          f == 0 ? euler_from_quat(orders[j], q) : euler_from_quat_near(orders[j], q, previous[j]);
-      previous[j] = angles;
-      std::size_t turn = 0;
-      for (const Channel c : motion.skeleton.joints[j].channels)
-        clip.channels.push_back(is_rotation(c) ? degrees(angles[turn++]) : motion.position(f, j)[axis(c)]);
-    }
-  }
+  clip.channels.reserve(motion.frames * motion.skeleton.channel_count());
+  ChannelEncoder(motion.skeleton).append(motion, clip.channels);
   return clip;
 }
 
