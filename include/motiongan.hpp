@@ -40,6 +40,7 @@
 #include "motiongan/models/cnn_critic.hpp"
 #include "motiongan/models/cnn_generator.hpp"
 #include "motiongan/models/dvgan.hpp"
+#include "motiongan/models/rnn_critic.hpp"
 //
 #include "motiongan/train/checkpoint.hpp"
 #include "motiongan/train/dvgan_trainer.hpp"

@@ -4,6 +4,7 @@
 #include <motiongan/io/state_dict.hpp>
 #include <motiongan/models/cnn_critic.hpp>
 #include <motiongan/models/cnn_generator.hpp>
+#include <motiongan/models/rnn_critic.hpp>
 #include <motiongan/models/rnn_generator.hpp>
 #include <motiongan/train/wgan_gp.hpp>
 
@@ -146,17 +147,9 @@ inline void rnn_generator(const File& file, const Context& context, Pairs& outpu
   add_gradients(gradients, file, parameters, grad(loss, values_of(parameters)));
 }
 
-inline void cnn_critic(const File& file, const Context& context, Pairs& outputs, Pairs& gradients) {
-  const std::string validate = file.text("validate");
-  require(validate == "dense" || validate == "mod2" || validate == "final", file.where(), ": validate is \"",
-          validate, "\", expected dense, mod2 or final");
-  CnnCritic model(Initializer(context, 1), {.vocabulary = file.number("vocab"),
-                                            .dof = file.number("dof"),
-                                            .frames = file.number("frames"),
-                                            .hidden = file.number("hidden"),
-                                            .validation = validate == "dense"  ? Validation::dense
-                                                          : validate == "mod2" ? Validation::mod2
-                                                                               : Validation::final});
+/// Scores, penalty and loss of any critic of text and motion, and their gradients.
+template <class Critic>
+void critic(Critic model, const File& file, const Context& context, Pairs& outputs, Pairs& gradients) {
   const auto parameters = named_parameters(model);
   io::load_parameters(parameters, file.content(), file.where(), "param.");
   const Var h_txt = model.encode_text(file.sentences(context)), both = concat_axis({h_txt, h_txt}, 0);
@@ -171,9 +164,29 @@ inline void cnn_critic(const File& file, const Context& context, Pairs& outputs,
   outputs.push_back(output(file, "out.loss", loss.loss));
   add_gradients(gradients, file, parameters, grad(loss.loss, values_of(parameters)));
   const Var leaf = Var::leaf(fake);
-  gradients.push_back({"grad.in.fake",
-                       grad(generator_loss(model(leaf, h_txt)), {leaf})[0].value().to_host<double>(),
-                       file.values("grad.in.fake")});
+  const Var of_fake = grad(generator_loss(model(leaf, h_txt)), {leaf})[0];
+  gradients.push_back({"grad.in.fake", of_fake.value().to_host<double>(), file.values("grad.in.fake")});
+}
+
+inline void cnn_critic(const File& file, const Context& context, Pairs& outputs, Pairs& gradients) {
+  const std::string validate = file.text("validate");
+  require(validate == "dense" || validate == "mod2" || validate == "final", file.where(), ": validate is \"",
+          validate, "\", expected dense, mod2 or final");
+  critic(CnnCritic(Initializer(context, 1), {.vocabulary = file.number("vocab"),
+                                             .dof = file.number("dof"),
+                                             .frames = file.number("frames"),
+                                             .hidden = file.number("hidden"),
+                                             .validation = validate == "dense"  ? Validation::dense
+                                                           : validate == "mod2" ? Validation::mod2
+                                                                                : Validation::final}),
+         file, context, outputs, gradients);
+}
+
+inline void rnn_critic(const File& file, const Context& context, Pairs& outputs, Pairs& gradients) {
+  critic(RnnCritic(Initializer(context, 1), {.vocabulary = file.number("vocab"),
+                                             .dof = file.number("dof"),
+                                             .hidden = file.number("hidden")}),
+         file, context, outputs, gradients);
 }
 
 }  // namespace detail
@@ -196,9 +209,11 @@ inline Report compare(const std::filesystem::path& path) {
     detail::rnn_generator(file, context, outputs, gradients);
   else if (report.model == "cnn_critic")
     detail::cnn_critic(file, context, outputs, gradients);
+  else if (report.model == "rnn_critic")
+    detail::rnn_critic(file, context, outputs, gradients);
   else
     throw Error(file.where(), ": no comparison for a model called \"", report.model,
-                "\"; there are: cnn_generator, rnn_generator, cnn_critic");
+                "\"; there are: cnn_generator, rnn_generator, cnn_critic, rnn_critic");
   add_errors(report, outputs);
   add_errors(report, gradients);
   report.outputs = outputs.size();

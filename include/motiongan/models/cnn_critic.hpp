@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "motiongan/models/residual.hpp"
+#include "motiongan/models/validate.hpp"
 #include "motiongan/nn/text_encoder.hpp"
 #include "motiongan/ops/matmul.hpp"
 
@@ -22,29 +23,6 @@ struct CnnCriticOptions {
   std::size_t taps = 3;        ///< of the convolutions: 3 or 5
   Validation validation = Validation::dense;
   LevelWeights level_weights = LevelWeights::exp;
-};
-
-/// The score of one time scale: mean over frames of score(ReLU(motion(h) + text(h_txt))), size-1
-/// convolutions.
-struct Validate {
-  Conv1d motion, text, score;
-
-  Validate() = default;
-  Validate(Initializer& init, std::size_t k) : motion(init, k, k), text(init, k, k), score(init, k, 1) {}
-
-  /// h [T, B, k], h_txt [1, B, k] -> [1, B, 1]. The mean is taken before `score`, which is linear: less to
-  /// multiply. `motion_weight` is motion.weight, or its product with what made h.
-  Var operator()(const Var& h, const Var& h_txt, const Var& motion_weight) const {
-    const Var moved = taps(h, motion_weight, {0}, h.dim(0), false, {.bias = motion.bias});
-    const Var hidden = mean_frames(relu_of_sum(moved, text(h_txt)));
-    return score(reshape(hidden, {1, hidden.dim(0), hidden.dim(1)}));
-  }
-
-  void list_parameters(ParameterList& list) {
-    list.add_module("motion", motion);
-    list.add_module("text", text);
-    list.add_module("score", score);
-  }
 };
 
 class CnnCritic {
@@ -88,9 +66,10 @@ class CnnCritic {
     for (std::size_t i = levels_ + 1; i-- > 0;) {
       const bool finest = i == levels_;
       if (!finest) h = halve(residual_[i], h, i + 1 == levels_ ? encode : Var());
-      if (is_validated(i))
-        scores.push_back(
-            validate_[i](h, text, finest ? after(validate_[i].motion, encode) : validate_[i].motion.weight));
+      if (is_validated(i)) {
+        const Validate& v = validate_[i];
+        scores.push_back(v(h, text, finest ? after(v.motion, encode) : v.motion.weight, v.motion.bias));
+      }
     }
     std::reverse(scores.begin(), scores.end());
     const std::size_t n = scores.size();
