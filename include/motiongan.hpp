@@ -48,6 +48,9 @@
 #include "motiongan/train/train.hpp"
 #include "motiongan/train/wgan_gp.hpp"
 //
+#include "motiongan/eval/drift.hpp"
+#include "motiongan/eval/euler_error.hpp"
+//
 #include "motiongan/view/line_plot.hpp"
 #include "motiongan/view/player.hpp"
 #include "motiongan/view/pose_strip.hpp"
