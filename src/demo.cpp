@@ -54,6 +54,7 @@ TrainArgs demo_options(const DemoArgs& demo) {
   args.training.critic_steps = 5;
   args.training.adam.learning_rate = 5e-4;
   args.run.max_minutes = demo.minutes;
+  choose_defaults(args, false);
   fill_in_choices(args);
   return args;
 }

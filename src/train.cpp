@@ -25,6 +25,7 @@ int run_training(TrainArgs args, const CLI::App& verb) {
   const fs::path folder = args.save.empty() ? default_save(args) : fs::path(args.save);
   const RunFiles files{folder};
   std::size_t done = 0;
+  choose_defaults(args, verb.count("--final-cut") > 0);  // a run that is resumed has its own, below
   if (args.resume) {
     require(fs::exists(files.checkpoint()), "there is no run to resume in ", folder.string(), " (no ",
             files.checkpoint().filename().string(), " there)");
@@ -45,7 +46,6 @@ int run_training(TrainArgs args, const CLI::App& verb) {
     if (!args.captions.empty()) args.captions = fs::absolute(args.captions).lexically_normal().string();
   }
   fill_in_choices(args);
-  levels_of(args.data.frames);  // refuses what is no power of two before anything is read
   if (args.resume && done >= args.training.iterations) {
     fmt::print("{} has all its {} already; --iterations N asks for more\n", folder.string(),
                counted(done, "iteration"));
@@ -117,15 +117,17 @@ void add_train(CLI::App& app, Job& job) {
   verb->add_flag("--resume", a.resume,
                  "continue the run in --save; its options are those of its first start");
 
-  option("--frames", a.data.frames, "frames of a motion, a power of two")->check(positive())->group("Data");
+  option("--frames", a.data.frames, "frames of a motion; a power of two where a network is a CNN")
+      ->check(positive())
+      ->group("Data");
   option("--rate", a.data.rate, "frames per second")->check(positive())->group("Data");
   verb->add_flag("--root-position,!--no-root-position", a.data.root_position,
                  "learn where the root is, not only how it turns [on]")
       ->group("Data");
   option("--root-rotation", a.root_rotation,
-         "heading: turn over the ground and tilt, every motion starts facing the same way; expmap: as the "
-         "papers")
-      ->check(CLI::IsMember({"heading", "expmap"}))
+         "heading: place and turn, every motion starts facing the same way; velocity: steps and turns, for "
+         "motion without end; expmap: as the papers [auto: velocity for the RNN generator, else heading]")
+      ->check(CLI::IsMember({"auto", "heading", "velocity", "expmap"}))
       ->group("Data");
   option("--first-frame", a.first_frame,
          "auto: drop T-poses put before the motion; keep; drop: the first frame")
@@ -135,15 +137,27 @@ void add_train(CLI::App& app, Job& job) {
       ->group("Data");
   option("--split-seed", a.data.split_seed, "which clips those are")->check(not_negative())->group("Data");
 
+  option("--generator", a.generator,
+         "cnn: a window at once, coarse to fine; rnn: frame by frame, for as long as one likes")
+      ->check(CLI::IsMember({"cnn", "rnn"}))
+      ->group("Model");
+  option("--critic", a.critic, "cnn: judges every time scale; rnn: poses and their changes")
+      ->check(CLI::IsMember({"cnn", "rnn"}))
+      ->group("Model");
   option("--hidden", a.model.hidden, "width of the networks")->check(positive())->group("Model");
   option("--taps", a.model.taps, "of the convolutions")->check(CLI::IsMember({3, 5}))->group("Model");
-  verb->add_flag("--final-cut,!--no-final-cut", a.model.final_cut, "generate twice the frames and cut [on]")
+  verb->add_flag("--final-cut,!--no-final-cut", a.final_cut,
+                 "generate twice the frames and cut [on for the CNN generator]")
       ->group("Model");
   option("--validation", a.validation, "time scales that the critic judges: all, every second, the last")
       ->check(CLI::IsMember({"dense", "mod2", "final"}))
       ->group("Model");
   option("--level-weights", a.level_weights, "how their scores are weighted")
       ->check(CLI::IsMember({"exp", "softmax"}))
+      ->group("Model");
+
+  option("--diff-input", a.diff_input, "what the RNN critic judges of changes: its LSTM's states, or them")
+      ->check(CLI::IsMember({"hidden", "difference"}))
       ->group("Model");
 
   option("--iterations", a.training.iterations, "how long to train")->check(positive())->group("Training");

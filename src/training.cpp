@@ -22,9 +22,11 @@ void each_kept(TrainArgs& a, F&& f) {
   f("--first-frame", a.first_frame);
   f("--train-share", a.data.train_share);
   f("--split-seed", a.data.split_seed);
+  f("--generator", a.generator);
+  f("--critic", a.critic);
   f("--hidden", a.model.hidden);
   f("--taps", a.model.taps);
-  f("--final-cut", a.model.final_cut);
+  f("--final-cut", a.final_cut);
   f("--seed", a.training.seed);
   f("--iterations", a.training.iterations);
   f("--critic-steps", a.training.critic_steps);
@@ -36,6 +38,7 @@ void each_kept(TrainArgs& a, F&& f) {
   f("--epsilon", a.training.adam.epsilon);
   f("--validation", a.validation);
   f("--level-weights", a.level_weights);
+  f("--diff-input", a.diff_input);
   f("--shift", a.training.input_shift);
 }
 
@@ -63,6 +66,7 @@ void take_from_note(TrainArgs& args, const CLI::App& verb, const std::string& no
     const bool names_data =
         name == "FOLDER" || name == "--procedural" || (name == "--captions" && other_data);
     if (verb.count(name) > 0 || (names_data && other_data)) return;
+    if (!kept.contains(name)) return;  // the option is younger than the run
     try {
       kept.at(name).get_to(member);
     } catch (const nlohmann::json::exception& error) {
@@ -71,18 +75,35 @@ void take_from_note(TrainArgs& args, const CLI::App& verb, const std::string& no
   });
 }
 
+void choose_defaults(TrainArgs& a, bool final_cut_given) {
+  const bool recurrent = a.generator == "rnn";
+  if (!final_cut_given) a.final_cut = !recurrent;
+  // Place and yaw counted from a window's start grow without bound once a generator goes on and on.
+  if (a.root_rotation == "auto") a.root_rotation = recurrent ? "velocity" : "heading";
+}
+
 void fill_in_choices(TrainArgs& a) {
   a.data.captions = a.captions;
   a.data.first_frame = a.first_frame == "keep"   ? motion::FirstFrame::keep
                        : a.first_frame == "drop" ? motion::FirstFrame::drop
                                                  : motion::FirstFrame::automatic;
-  a.data.root_rotation =
-      a.root_rotation == "expmap" ? motion::RootRotation::expmap : motion::RootRotation::heading;
-  a.training.validation = a.validation == "mod2"    ? Validation::mod2
-                          : a.validation == "final" ? Validation::final
-                                                    : Validation::dense;
-  a.training.level_weights = a.level_weights == "softmax" ? LevelWeights::softmax : LevelWeights::exp;
+  a.data.root_rotation = a.root_rotation == "expmap"     ? motion::RootRotation::expmap
+                         : a.root_rotation == "velocity" ? motion::RootRotation::velocity
+                                                         : motion::RootRotation::heading;
+  a.model.generator = a.generator == "rnn" ? Generator::rnn : Generator::cnn;
+  a.model.final_cut = a.final_cut;
+  DvganCriticOptions& critic = a.training.critic;
+  critic.critic = a.critic == "rnn" ? Critic::rnn : Critic::cnn;
+  critic.validation = a.validation == "mod2"    ? Validation::mod2
+                      : a.validation == "final" ? Validation::final
+                                                : Validation::dense;
+  critic.level_weights = a.level_weights == "softmax" ? LevelWeights::softmax : LevelWeights::exp;
+  critic.diff_input = a.diff_input == "difference" ? DiffInput::difference : DiffInput::hidden;
   a.model.seed = a.training.seed;
+  if (a.generator == "cnn" || a.critic == "cnn")
+    levels_of(a.data.frames);
+  else
+    require(a.data.frames >= 2, "--frames ", a.data.frames, ": expected at least 2");
 }
 
 motion::Dataset load_data(const TrainArgs& args) {
@@ -137,10 +158,13 @@ void print_data(const motion::Dataset& data, const TrainArgs& args) {
 }
 
 void print_model(Dvgan& model) {
-  const double millions = 1e-6 * static_cast<double>(parameter_count(named_parameters(model.generator())));
-  print_fact("generator", fmt::format("{} million parameters (width {}, {} taps{})", brief(millions, 3),
-                                      model.options().hidden, model.options().taps,
-                                      model.options().final_cut ? ", final cut" : ""));
+  const double millions = 1e-6 * static_cast<double>(parameter_count(named_parameters(model)));
+  const DvganOptions& options = model.options();
+  print_fact("generator",
+             fmt::format("{}, {} million parameters (width {}{}{})", model.is_recurrent() ? "RNN" : "CNN",
+                         brief(millions, 3), options.hidden,
+                         model.is_recurrent() ? std::string() : fmt::format(", {} taps", options.taps),
+                         options.cuts() ? ", final cut" : ""));
   print_fact("device", describe(model.context().device()));
 }
 

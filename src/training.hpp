@@ -10,7 +10,10 @@ struct TrainArgs {
   std::string folder, captions;
   std::size_t procedural = 0;  // clips of built-in motion; 0: the folder's
   motion::DatasetOptions data;
-  std::string root_rotation = "heading", first_frame = "auto", validation = "dense", level_weights = "exp";
+  std::string generator = "cnn", critic = "cnn";
+  bool final_cut = true;
+  std::string root_rotation = "auto", first_frame = "auto", validation = "dense", level_weights = "exp",
+              diff_input = "hidden";
   DvganOptions model;
   DvganTrainOptions training;
   // What only this start of it is.
@@ -25,7 +28,11 @@ std::string options_as_note(TrainArgs& args);
 /// Takes from a run's note what the command line of `verb` does not give; `from` is the checkpoint.
 void take_from_note(TrainArgs& args, const CLI::App& verb, const std::string& note, const fs::path& from);
 
+/// Gives options of a new run that depend on its generator, and were left open, their values.
+void choose_defaults(TrainArgs& args, bool final_cut_given);
+
 /// Puts the choices that are given as words, and what follows from other options, where the library has them.
+/// Refuses windows that the networks cannot have.
 void fill_in_choices(TrainArgs& args);
 
 motion::Dataset load_data(const TrainArgs& args);

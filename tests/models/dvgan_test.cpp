@@ -96,11 +96,11 @@ TEST_CASE("a file holds all that is needed: loaded, it generates the same bits")
     const auto path = scratch("round");
     model.save(path);
     Dvgan loaded = Dvgan::load(context(), path);
-    CHECK(all_values(loaded.generator()) == all_values(model.generator()));
+    CHECK(all_values(loaded) == all_values(model));
     CHECK(loaded.generate_poses(caption, {.count = 3, .seed = 9}) ==
           model.generate_poses(caption, {.count = 3, .seed = 9}));
     CHECK(loaded.options().taps == options.taps);
-    CHECK(loaded.options().final_cut == options.final_cut);
+    CHECK(loaded.options().cuts() == options.cuts());
     CHECK(loaded.format().vocabulary.words() == model.format().vocabulary.words());
     CHECK(loaded.format().normalizer.mean() == model.format().normalizer.mean());
     const auto again = scratch("again");
@@ -115,11 +115,11 @@ TEST_CASE("a file holds all that is needed: loaded, it generates the same bits")
 TEST_CASE("with and without final cut") {
   const Dvgan with = made({.hidden = 8, .final_cut = true}),
               without = made({.hidden = 8, .final_cut = false});
-  CHECK(with.generator().levels() == 4);  // 16 frames made, 8 kept
-  CHECK(without.generator().levels() == 3);
-  CHECK(without.generator().cuts(context(), {}, 4).empty());
+  CHECK(with.cnn().levels() == 4);  // 16 frames made, 8 kept
+  CHECK(without.cnn().levels() == 3);
+  CHECK(without.cnn().cuts(context(), {}, 4).empty());
   const RandomKey key{.seed = 6};
-  for (cl_int cut : with.generator().cuts(context(), key, 500).to_host()) {
+  for (cl_int cut : with.cnn().cuts(context(), key, 500).to_host()) {
     CHECK(cut >= 0);
     CHECK(cut <= 8);
   }

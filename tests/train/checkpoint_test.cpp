@@ -40,7 +40,7 @@ struct Run {
   }
   /// Everything that training changes.
   std::vector<std::vector<float>> state() {
-    std::vector<std::vector<float>> all = all_values(model.generator());
+    std::vector<std::vector<float>> all = all_values(model);
     for (auto& values : all_values(trainer.critic())) all.push_back(std::move(values));
     for (Adam* adam : {&trainer.generator_adam(), &trainer.critic_adam()}) {
       all.push_back(adam->mean().to_host());
@@ -188,8 +188,8 @@ TEST_CASE("other options or data than at the start are refused by name") {
   CHECK(says(refused([](auto& o) { o.adam.beta2 = 0; }), "beta2"));
   CHECK(says(refused([](auto& o) { o.adam.epsilon = 1; }), "epsilon"));
   CHECK(says(refused([](auto& o) { o.input_shift = false; }), "input_shift = true, now false"));
-  CHECK(says(refused([](auto& o) { o.validation = Validation::final; }), "validation"));
-  CHECK(says(refused([](auto& o) { o.level_weights = LevelWeights::softmax; }), "level_weights"));
+  CHECK(says(refused([](auto& o) { o.critic.validation = Validation::final; }), "validation"));
+  CHECK(says(refused([](auto& o) { o.critic.level_weights = LevelWeights::softmax; }), "level_weights"));
   CHECK(says(refused([](auto& o) { o.seed = 9; }), "seed = 1, now 9"));
   Run longer(small_options, 16), wider(small_options, 8, 16);
   CHECK(says(message_of([&] { load_checkpoint(longer.trainer, path); }), "\"format\" differs"));

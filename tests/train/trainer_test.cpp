@@ -19,7 +19,7 @@ struct Run {
   DvganTrainer trainer;
   explicit Run(const DvganTrainOptions& options = small_options, const DvganOptions& sizes = {.hidden = 8})
       : model(context, small_data().format, sizes), trainer(model, small_data(), options) {}
-  std::vector<std::vector<float>> generator() { return all_values(model.generator()); }
+  std::vector<std::vector<float>> generator() { return all_values(model); }
   std::vector<std::vector<float>> critic() { return all_values(trainer.critic()); }
 };
 
@@ -29,11 +29,10 @@ TEST_CASE("two runs are equal bit for bit, whichever options") {
   for (const DvganTrainOptions& options :
        {small_options,
         DvganTrainOptions{
-            .critic_steps = 1, .batch = 3, .input_shift = false, .validation = Validation::mod2},
+            .critic_steps = 1, .batch = 3, .input_shift = false, .critic = {.validation = Validation::mod2}},
         DvganTrainOptions{.critic_steps = 1,
         .batch = 5,
-        .validation = Validation::final,
-        .level_weights = LevelWeights::softmax}}) {
+        .critic = {.validation = Validation::final, .level_weights = LevelWeights::softmax}}}) {
     Run a(options), b(options);
     for (int i = 0; i < 4; ++i) {
       a.trainer.iterate();
@@ -71,7 +70,7 @@ TEST_CASE("a critic step changes the critic alone, a generator step the generato
   CHECK(run.critic() == after);
   const auto moved = run.generator();
   for (std::size_t i = 0; i < moved.size(); ++i) {
-    CAPTURE(named_parameters(run.model.generator())[i].name);
+    CAPTURE(named_parameters(run.model)[i].name);
     CHECK(moved[i] != generator[i]);
   }
 }
@@ -79,7 +78,7 @@ TEST_CASE("a critic step changes the critic alone, a generator step the generato
 TEST_CASE("the generator's gradient costs the same when the critic's parameters are constants") {
   Run run;
   const Context& context = run.context;
-  CnnGenerator& generator = run.model.generator();
+  const CnnGenerator& generator = run.model.cnn();
   const std::size_t words = small_data().format.vocabulary.size();
   const Sentences text(context, {{1, 2}, {3}}, words);
   const auto launches = [&](const std::vector<Var>& wanted) {
@@ -95,7 +94,7 @@ TEST_CASE("the generator's gradient costs the same when the critic's parameters 
     grad(loss, wanted);
     return context.statistics().launches - before;
   };
-  const std::vector<Var> of_generator = values_of(named_parameters(generator));
+  const std::vector<Var> of_generator = values_of(named_parameters(run.model));
   std::vector<Var> of_both = of_generator;
   for (const NamedParameter& p : named_parameters(run.trainer.critic()))
     if (!p.name.starts_with("text.")) of_both.push_back(*p.value);

@@ -18,8 +18,10 @@ inline nlohmann::json to_json(const DvganTrainOptions& o) {
           {"beta2", o.adam.beta2},
           {"epsilon", o.adam.epsilon},
           {"input_shift", o.input_shift},
-          {"validation", static_cast<int>(o.validation)},
-          {"level_weights", static_cast<int>(o.level_weights)},
+          {"critic", static_cast<int>(o.critic.critic)},
+          {"validation", static_cast<int>(o.critic.validation)},
+          {"level_weights", static_cast<int>(o.critic.level_weights)},
+          {"diff_input", static_cast<int>(o.critic.diff_input)},
           {"seed", o.seed}};
 }
 
@@ -76,7 +78,7 @@ inline void save_checkpoint(DvganTrainer& trainer, const std::filesystem::path& 
                             const RunNotes& notes = {}) {
   io::SafeTensors file;
   trainer.model().describe(file);
-  io::save_parameters(named_parameters(trainer.model().generator()), file, "generator.");
+  io::save_parameters(named_parameters(trainer.model()), file, "generator.");
   io::save_parameters(named_parameters(trainer.critic()), file, "critic.");
   for (const auto& [name, adam] :
        {std::pair{"generator", &trainer.generator_adam()}, std::pair{"critic", &trainer.critic_adam()}}) {
@@ -105,13 +107,15 @@ inline void load_checkpoint(DvganTrainer& trainer, const std::filesystem::path& 
     require(text(key) == expected.metadata.at(key), where,
             ": the run was started with other data or another model (\"", key,
             "\" differs); give the options of ", "the first start, or another folder for a new run");
-  const auto before = nlohmann::json::parse(text("training"), nullptr, false),
+  // An option that is younger than the run had its default then.
+  auto before = detail::to_json(DvganTrainOptions{});
+  const auto then = nlohmann::json::parse(text("training"), nullptr, false),
              now = detail::to_json(trainer.options());
-  require(before.is_object(), where, ": the training options cannot be read");
+  require(then.is_object(), where, ": the training options cannot be read");
+  before.update(then);
   for (const auto& [key, value] : now.items())
-    require(before.contains(key) && before.at(key) == value, where, ": the run was started with ", key, " = ",
-            before.value(key, nlohmann::json()).dump(), ", now ", value.dump(),
-            " is asked; give the same, or another folder for a new run");
+    require(before.at(key) == value, where, ": the run was started with ", key, " = ", before.at(key).dump(),
+            ", now ", value.dump(), " is asked; give the same, or another folder for a new run");
   const std::size_t generator_steps = detail::checkpoint_number(file, "adam.generator.steps", where),
                     critic_steps = detail::checkpoint_number(file, "adam.critic.steps", where),
                     iteration = detail::checkpoint_number(file, "iteration", where);
@@ -120,7 +124,7 @@ inline void load_checkpoint(DvganTrainer& trainer, const std::filesystem::path& 
   std::array<Var, 4> moments{Var::constant(generator.mean()), Var::constant(generator.square()),
                              Var::constant(critic.mean()), Var::constant(critic.square())};
   ParameterList all;
-  all.add_module("generator", trainer.model().generator());
+  all.add_module("generator", trainer.model());
   all.add_module("critic", trainer.critic());
   all.add("adam.generator.mean", moments[0]);
   all.add("adam.generator.square", moments[1]);

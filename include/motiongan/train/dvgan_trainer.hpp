@@ -1,7 +1,7 @@
 // Training DVGAN (SPEC 4): critic steps and generator steps, nothing read back between them.
 #pragma once
-#include "motiongan/models/cnn_critic.hpp"
 #include "motiongan/models/dvgan.hpp"
+#include "motiongan/models/dvgan_critic.hpp"
 #include "motiongan/optim/adam.hpp"
 #include "motiongan/train/wgan_gp.hpp"
 #include "motiongan/train/windows.hpp"
@@ -16,8 +16,7 @@ struct DvganTrainOptions {
   double lambda_gp = 10;    ///< weight of the gradient penalty
   AdamOptions adam{};       ///< of both networks
   bool input_shift = true;  ///< move each real/fake pair by up to N/2 frames at the critic's input
-  Validation validation = Validation::dense;
-  LevelWeights level_weights = LevelWeights::exp;
+  DvganCriticOptions critic{};
   std::uint64_t seed = 1;
 };
 
@@ -40,10 +39,9 @@ class DvganTrainer {
                  .dof = model.format().dof(),
                  .frames = model.format().frames,
                  .hidden = model.options().hidden,
-                 .taps = model.options().taps,
-                 .validation = options.validation,
-                 .level_weights = options.level_weights}),
-        generator_adam_(named_parameters(model.generator()), options.adam),
+                 .taps = model.options().taps},
+                options.critic),
+        generator_adam_(named_parameters(model), options.adam),
         critic_adam_(named_parameters(critic_), options.adam) {
     require(options.batch > 0 && options.critic_steps > 0, "batch and critic_steps must be positive");
     require(data.format.dof() == model.format().dof() && data.format.frames == model.format().frames &&
@@ -57,7 +55,7 @@ class DvganTrainer {
   }
 
   Dvgan& model() { return model_; }
-  CnnCritic& critic() { return critic_; }
+  DvganCritic& critic() { return critic_; }
   const DvganTrainOptions& options() const { return options_; }
   std::size_t iteration() const { return iteration_; }
   void set_iteration(std::size_t iteration) { iteration_ = iteration; }
@@ -81,7 +79,7 @@ class DvganTrainer {
     Var fake;
     {
       const NoGrad values_only;
-      fake = make_fake(batch.text, key);
+      fake = model_.make(batch.text, key);
     }
     const Indices shift = draw_shift(key);
     const Tensor real = shifted(Var::constant(batch.motion), shift).value();
@@ -99,7 +97,7 @@ class DvganTrainer {
   void generator_step(std::uint32_t step) {
     const RandomKey key{.seed = options_.seed, .step = step};
     const Batch batch = windows_.draw(options_.seed, step, options_.batch);
-    const Var fake = shifted(make_fake(batch.text, key), draw_shift(key));
+    const Var fake = shifted(model_.make(batch.text, key), draw_shift(key));
     Var h_txt;
     {
       const NoGrad values_only;  // the critic's view of the text does not depend on the generator
@@ -116,13 +114,6 @@ class DvganTrainer {
   }
 
  private:
-  Var make_fake(const Sentences& text, const RandomKey& key) const {
-    const Context& context = model_.context();
-    const CnnGenerator& generator = model_.generator();
-    const Indices cut = generator.cuts(context, key, text.batch);
-    return generator(text, generator.noise(context, key, text.batch, cut), cut);
-  }
-
   /// One shift of a whole number of frames in [-N/2, N/2] for each sample; empty when shifting is off.
   Indices draw_shift(const RandomKey& key) const {
     if (!options_.input_shift) return {};
@@ -137,7 +128,7 @@ class DvganTrainer {
   Dvgan& model_;
   DvganTrainOptions options_;
   WindowSampler windows_;
-  CnnCritic critic_;
+  DvganCritic critic_;
   Adam generator_adam_, critic_adam_;
   CriticLoss critic_loss_;
   Var generator_loss_;
