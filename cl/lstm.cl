@@ -155,3 +155,18 @@ kernel void lstm_slope_backward(global const real* gates, uint gates0, global co
   store_some(of_o * o * (1 - o), adjoint + 3 * k, left);
   store_some(of_c * f, c_carry, left);
 }
+
+/// out[j, i] = x[i, j] for x [rows, columns]. A work-item turns a square of VW x VW, so that both sides are
+/// read and written by vectors.
+kernel void turn(global const real* x, uint x0, global real* out, uint out0, uint rows, uint columns) {
+  const uint across = (columns + VW - 1) / VW, item = get_global_id(0);
+  const uint i = item / across * VW, j = item % across * VW;
+  if (i >= rows) return;
+  real square[VW * VW], line[VW];
+  const uint high = min(rows - i, (uint)VW), wide = min(columns - j, (uint)VW);
+  for (uint r = 0; r < high; ++r) vstore(load_some(x + x0 + (i + r) * columns + j, columns - j), r, square);
+  for (uint c = 0; c < wide; ++c) {
+    for (uint r = 0; r < high; ++r) line[r] = square[r * VW + c];
+    store_some(vload(0, line), out + out0 + (j + c) * rows + i, rows - i);
+  }
+}

@@ -147,3 +147,21 @@ TEST_CASE("first derivatives with lengths equal the composed form's") {
   const auto of_a = grad({a}, {u}, v), of_b = grad({b}, {u}, v);
   for (std::size_t i = 0; i < v.size(); ++i) check_equal(of_a[i], of_b[i], 1e-12);
 }
+
+TEST_CASE("a matrix turned, and gates by turned weights") {
+  for (const Shape& shape : {Shape{1, 1}, Shape{3, 5}, Shape{17, 8}, Shape{8, 33}}) {
+    const Input x = randn(shape);
+    const std::vector<double> out = turned(constant(x)).value().to_host<double>();
+    for (std::size_t i = 0; i < shape[0]; ++i)
+      for (std::size_t j = 0; j < shape[1]; ++j) CHECK(out[j * shape[0] + i] == x.values[i * shape[1] + j]);
+  }
+  const Function squared = [](auto& v) { return square(turned(v[0])); };
+  CHECK(check_grads(double_context(), squared, {randn({3, 5})}, 3) < 1e-7);
+  const std::vector<Input> at{randn({4, 2, 3}), randn({8, 3}), randn({8})};
+  const Function gates = [](auto& v) { return square(lstm_gates(v[0], turned(v[1]), v[2])); };
+  CHECK(check_grads(double_context(), gates, at, 2) < 1e-7);
+  const Var x = constant(at[0]), w = constant(at[1]), bias = constant(at[2]);
+  const Var plain =
+      reshape(matmul(reshape(x, {8, 3}), w, false, true), {4, 2, 8}) + expand(bias, 1, 8, 8, 1, {4, 2, 8});
+  check_equal(lstm_gates(x, turned(w), bias), plain, 1e-15);
+}

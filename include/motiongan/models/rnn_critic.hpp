@@ -66,36 +66,29 @@ class RnnCritic {
   }
 
  private:
-  struct Folded {
-    Var weight, bias;  // [1, out, in], [out]
-  };
-  /// The layer (weight [out, k], bias [out]) after `first`, as one.
-  static Folded after(const Var& weight, const Var& bias, const Linear& first) {
-    const std::size_t out = weight.dim(0), k = weight.dim(1), in = first.weight.dim(1);
-    return {reshape(matmul(weight, first.weight), {1, out, in}),
-            reshape(matmul(weight, reshape(first.bias, {k, 1})), {out}) + bias};
-  }
-
+  /// The score of features that `first` makes of x [T, B, M], by the product of its weights with those that
+  /// follow.
   static Var judge(const Validate& validate, const Var& x, const Var& text, const Linear& first) {
-    const std::size_t k = first.weight.dim(0);
-    const Folded f = after(reshape(validate.motion.weight, {k, k}), validate.motion.bias, first);
-    return validate(x, text, f.weight, f.bias);
+    const std::size_t k = first.weight.dim(0), dof = first.weight.dim(1);
+    const Var motion = reshape(validate.motion.weight, {k, k});
+    const Var of_bias = matmul(motion, reshape(first.bias, {k, 1}));
+    return validate(x, text, reshape(matmul(motion, first.weight), {1, k, dof}),
+                    reshape(of_bias, {k}) + validate.motion.bias);
   }
 
   /// The upper LSTM layer's h over the differences: [N-1, B, M] -> [N-1, B, k].
   Var hidden(const Var& differences) const {
     const Var zero = zeros(differences.context(), {differences.dim(1), options_.hidden});
-    const std::size_t steps = differences.dim(0);
     Var h;
     for (const Lstm::Layer& layer : lstm_.layers) {
-      const Var bias = layer.bias_ih + layer.bias_hh;
+      const Var w = turned(layer.weight_ih), bias = layer.bias_ih + layer.bias_hh;  // [k, 4k], [4k]
       Var gates;
       if (h.empty()) {
-        const Folded f = after(layer.weight_ih, bias, diff_);
-        gates = taps(differences, f.weight, {0}, steps, false, {.bias = f.bias});
+        const std::size_t k = options_.hidden;
+        const Var of_bias = matmul(reshape(diff_.bias, {1, k}), w);
+        gates = lstm_gates(differences, matmul(diff_.weight, w, true), reshape(of_bias, {4 * k}) + bias);
       } else {
-        const Var w = reshape(layer.weight_ih, {1, layer.weight_ih.dim(0), layer.weight_ih.dim(1)});
-        gates = taps(h, w, {0}, steps, false, {.bias = bias});
+        gates = lstm_gates(h, w, bias);
       }
       h = hidden_states(lstm_layer(gates, layer.weight_hh, zero, zero));
     }

@@ -4,6 +4,7 @@
 #include "motiongan/autograd/grad.hpp"
 #include "motiongan/ops/lstm_sweeps.hpp"
 #include "motiongan/ops/matmul.hpp"
+#include "motiongan/ops/taps.hpp"
 
 namespace motiongan {
 
@@ -83,6 +84,20 @@ inline Var lstm_layer_slope(const Var& g, const Var& x_gates, const Var& w_hh, c
 
 }  // namespace detail
 
+/// A matrix turned: [rows, columns] -> [columns, rows].
+inline Var turned(const Var& x) {
+  return record("turned", {x}, detail::turned_value(x.value()),
+                [](const Node&, const Var& g, const Needs&) -> std::vector<Var> { return {turned(g)}; });
+}
+
+/// What an input does to the gates of every step, x W_ih^T + bias: x [T, B, in], `turned_w_ih` [in, 4k] the
+/// input weights turned, bias [4k] -> [T, B, 4k]. With the weights turned their gradient is a product that
+/// reads gates by rows.
+inline Var lstm_gates(const Var& x, const Var& turned_w_ih, const Var& bias) {
+  const Var w = reshape(turned_w_ih, {1, turned_w_ih.dim(0), turned_w_ih.dim(1)});
+  return taps(x, w, {0}, x.dim(0), true, {.bias = bias});
+}
+
 /// One LSTM layer as PyTorch's (gates i, f, g, o). `x_gates` [T, B, 4k] is W_ih x + b_ih + b_hh, `w_hh` [4k,
 /// k], `h_first`, `c_first` [B, k]. A sample keeps its state from step lengths[b] on (`lengths` may be empty:
 /// all run to T). Returns all states, [2, T, B, k]: h of every step, then c of every step.
@@ -102,8 +117,9 @@ inline Var lstm_layer(const Var& x_gates, const Var& w_hh, const Var& h_first, c
           const detail::LstmGradients found = detail::lstm_backward(pass, g.value(), {.h_first = needs[2]});
           Var by_weights;
           if (needs[1]) {
-            by_weights = Var::constant(Tensor(g.context(), in[1].shape()));
-            detail::weight_gradient(pass, found.gates, pass.states, pass.h_first, by_weights.value(), false);
+            const Tensor turned(g.context(), {pass.hidden(), 4 * pass.hidden()});
+            detail::weight_gradient(pass, found.gates, pass.states, pass.h_first, turned, false);
+            by_weights = Var::constant(detail::turned_value(turned));
           }
           return {Var::constant(found.gates), by_weights, needs[2] ? Var::constant(found.h_first) : Var(),
                   needs[3] ? Var::constant(found.c_first) : Var()};

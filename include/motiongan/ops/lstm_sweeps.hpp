@@ -77,27 +77,39 @@ inline void recurrence_gradient(const LstmPass& pass, const Tensor& rows, const 
   gemm(pass.context(), call);
 }
 
-/// w [4k, k] = or += sum over t of rows[t]^T h[t-1], all steps in one product; the first step's, with
-/// `first`, apart (absent: left out). rows is [T, B, 4k], h [T, B, k] or more.
+/// A matrix turned: [rows, columns] -> [columns, rows].
+inline Tensor turned_value(const Tensor& x) {
+  const std::size_t rows = x.dim(0), columns = x.dim(1);
+  const Context& context = x.context();
+  Tensor out(context, {columns, rows});
+  context.launch("lstm", "turn", Grid::items(vectors(context, rows) * vectors(context, columns)), x, out,
+                 rows, columns);
+  return out;
+}
+
+/// w [k, 4k] = or += sum over t of h[t-1]^T rows[t], all steps in one product; the first step's, with
+/// `first`, apart (absent: left out). rows is [T, B, 4k], h [T, B, k] or more. This is the gradient of the
+/// weights turned: the other way round the product would read the long rows of gates by columns, 4k numbers
+/// apart, at a third of the speed.
 inline void weight_gradient(const LstmPass& pass, const Tensor& rows, const Tensor& h, const Tensor& first,
                             const Tensor& w, bool accumulate) {
   GemmCall call;
-  call.m = call.a_ld = 4 * pass.hidden();
-  call.n = call.b_ld = call.c_ld = pass.hidden();
-  call.a = rows;
+  call.m = call.a_ld = pass.hidden();
+  call.n = call.b_ld = call.c_ld = 4 * pass.hidden();
+  call.b = rows;
   call.a_transposed = true;
   call.c = w;
   call.accumulate = accumulate;
   if (!first.empty()) {
     call.k = pass.batch();
-    call.b = first;
+    call.a = first;
     gemm(pass.context(), call);
     call.accumulate = true;
   }
   if (pass.frames() == 1) return;
   call.k = (pass.frames() - 1) * pass.batch();
-  call.a_offset[0] = 4 * pass.slab();
-  call.b = h;
+  call.b_offset[0] = 4 * pass.slab();
+  call.a = h;
   gemm(pass.context(), call);
 }
 
@@ -189,9 +201,10 @@ inline LstmSlopeGradients lstm_slope_gradients(const LstmPass& pass, const Tenso
   }
   out.gates = gates;
   if (of_w_hh) {
-    out.w_hh = Tensor(context, {4 * k, k});
-    weight_gradient(pass, gates, pass.states, pass.h_first, out.w_hh, false);
-    weight_gradient(pass, slope, out.g, {}, out.w_hh, true);
+    const Tensor turned(context, {k, 4 * k});
+    weight_gradient(pass, gates, pass.states, pass.h_first, turned, false);
+    weight_gradient(pass, slope, out.g, {}, turned, true);
+    out.w_hh = turned_value(turned);
   }
   return out;
 }
