@@ -335,3 +335,119 @@ kernel void gemm_finish(global real* c, uint c_first, global const real* bias, u
   global real* at = c + c_first + batch * batch_stride + i * c_stride + j;
   *at = finish_one(*at, flags, bias + bias_first + j, residual + residual_first + i * residual_stride + j);
 }
+
+// B in panels of COLUMNS columns, out[panel][p][COLUMNS], for products that come again and again: what the
+// kernel above does for every product is done once. Columns past n are anything. Items: panels, pieces of
+// BLOCK values of p.
+__attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_pack(global const real* b, uint b_first,
+                                                                     uint b_p, uint b_column, uint n, uint k,
+                                                                     global real* out, uint out_first) {
+  realv packed[BLOCK * 2];
+  const uint column = get_group_id(0) * COLUMNS, p = get_group_id(1) * BLOCK;
+  const uint width = min((uint)COLUMNS, n - column), count = min((uint)BLOCK, k - p);
+  global const real* from = b + b_first + p * b_p + column * b_column;
+  if (b_column != 1)
+    pack_transposed(from, b_column, count, width, packed);
+  else
+    pack_narrow_rows(from, b_p, count, width, width == COLUMNS ? count : 0, packed);
+  global real* to = out + out_first + ((size_t)get_group_id(0) * k + p) * COLUMNS;
+  for (uint i = 0; i < 2 * count; ++i) WRITE(to + i * VW, packed[i]);
+}
+
+#define FMA_PANEL(i)                       \
+  {                                        \
+    const realv value = a[i * row_stride]; \
+    x##i = fma(value, b0, x##i);           \
+    y##i = fma(value, b1, y##i);           \
+  }
+// tile[R][COLUMNS] += A * a panel.
+#define DEFINE_MULTIPLY_PANEL(R)                                                             \
+  static inline void multiply_panel_##R(global const real* a, size_t row_stride, uint count, \
+                                        global const real* b, realv* tile) {                 \
+    ROWS_##R(LOAD) for (uint p = 0; p < count; ++p, ++a, b += COLUMNS) {                     \
+      const realv b0 = READ(b), b1 = READ(b + VW);                                           \
+      ROWS_##R(FMA_PANEL)                                                                    \
+    }                                                                                        \
+    ROWS_##R(STORE)                                                                          \
+  }
+#if MOST_ROWS == 12
+DEFINE_MULTIPLY_PANEL(12)
+DEFINE_MULTIPLY_PANEL(8)
+#else
+DEFINE_MULTIPLY_PANEL(6)
+#endif
+DEFINE_MULTIPLY_PANEL(4)
+DEFINE_MULTIPLY_PANEL(2)
+DEFINE_MULTIPLY_PANEL(1)
+
+// One row times DIRECT panels: several streams of B at once, for one waits on memory.
+static inline void multiply_panels_1(global const real* a, uint count, global const real* b, size_t panel,
+                                     realv* sums) {
+  realv s0 = sums[0], s1 = sums[1], s2 = sums[2], s3 = sums[3];
+  realv s4 = sums[4], s5 = sums[5], s6 = sums[6], s7 = sums[7];
+  for (uint p = 0; p < count; ++p, b += COLUMNS) {
+    const realv value = a[p];
+    global const real *b1 = b + panel, *b2 = b1 + panel, *b3 = b2 + panel;
+    s0 = fma(value, READ(b), s0), s1 = fma(value, READ(b + VW), s1);
+    s2 = fma(value, READ(b1), s2), s3 = fma(value, READ(b1 + VW), s3);
+    s4 = fma(value, READ(b2), s4), s5 = fma(value, READ(b2 + VW), s5);
+    s6 = fma(value, READ(b3), s6), s7 = fma(value, READ(b3 + VW), s7);
+  }
+  sums[0] = s0, sums[1] = s1, sums[2] = s2, sums[3] = s3;
+  sums[4] = s4, sums[5] = s5, sums[6] = s6, sums[7] = s7;
+}
+
+// The product with a packed B: one problem, one segment, A not transposed, C not accumulated; the same bits
+// as without packing. Groups: x over panels (panels_per_group each), y over rows.
+__attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_packed(
+    global const real* restrict a, global const real* restrict b, global real* restrict c,
+    global const real* restrict bias, global const real* restrict residual, const Numbers g) {
+  realv tile[MOST_ROWS * 2];
+  a += g.a_first + g.a_segment[0];
+  b += g.b_first;
+  c += g.c_first;
+  bias += g.bias_first;
+  residual += g.residual_first;
+  const uint k = g.k, flags = g.flags, n = g.n;
+  const uint row_begin = get_group_id(1) * g.rows_per_group, row_end = min(g.m, row_begin + g.rows_per_group);
+  const uint column_begin = get_group_id(0) * g.panels_per_group * COLUMNS;
+  const uint column_end = min(n, column_begin + g.panels_per_group * COLUMNS);
+  const size_t a_row = g.a_row, c_row = g.c_row, residual_row = g.residual_row, panel = (size_t)k * COLUMNS;
+  for (uint j = column_begin; j < column_end; j += COLUMNS) {
+    global const real* from = b + j / COLUMNS * panel;
+    if (row_end - row_begin == 1 && column_end - j >= DIRECT * COLUMNS) {
+      realv sums[2 * DIRECT];
+      global const real* at = c + row_begin * c_row + j;
+      for (uint w = 0; w < 2 * DIRECT; ++w) sums[w] = flags & ACCUMULATE ? READ(at + w * VW) : (realv)(0);
+      multiply_panels_1(a + row_begin * a_row, k, from, panel, sums);
+      for (uint w = 0; w < DIRECT; ++w, j += COLUMNS)
+        store_tile(c + row_begin * c_row + j, 0, 1, COLUMNS, bias + j,
+                   residual + row_begin * residual_row + j, 0, flags, sums + 2 * w);
+      j -= COLUMNS;
+      continue;
+    }
+    const uint width = min((uint)COLUMNS, column_end - j);
+    for (uint i = row_begin, rows; i < row_end; i += rows) {
+      const uint left = row_end - i;
+      rows = left >= MOST_ROWS ? MOST_ROWS : left >= 8 ? 8 : left >= 4 ? 4 : left >= 2 ? 2 : 1;
+      global const real* rows_of_a = a + i * a_row;
+      if (flags & ACCUMULATE)
+        load_tile(c + i * c_row + j, c_row, rows, width, tile);
+      else
+        for (uint e = 0; e < 2 * rows; ++e) tile[e] = 0;
+#define MULTIPLY_PANEL(R) \
+  if (rows == R) multiply_panel_##R(rows_of_a, a_row, k, from, tile);
+#if MOST_ROWS == 12
+      MULTIPLY_PANEL(12)
+      MULTIPLY_PANEL(8)
+#else
+      MULTIPLY_PANEL(6)
+#endif
+      MULTIPLY_PANEL(4)
+      MULTIPLY_PANEL(2)
+      MULTIPLY_PANEL(1)
+      store_tile(c + i * c_row + j, c_row, rows, width, bias + j, residual + i * residual_row + j,
+                 residual_row, flags, tile);
+    }
+  }
+}

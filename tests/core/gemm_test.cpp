@@ -282,3 +282,31 @@ TEST_CASE("wrong arguments are refused with the sizes") {
 }
 
 }  // namespace
+
+TEST_CASE("a packed B changes no bit, whatever the size, and nothing around C") {
+  std::mt19937 random(11);
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    const Context& context = context_of(precision);
+    for (int i = 0; i < 150; ++i) {
+      Plan plan = random_plan(random, 257);
+      if (i % 3 == 0) plan.m = 1 + static_cast<std::size_t>(i % 2);
+      if (i % 4 == 0) plan.n = 1000 + static_cast<std::size_t>(i);  // enough panels for a row's own way
+      if (i % 10 == 0) plan.k = 1600;                               // more than is packed at once
+      plan.a_transposed = false, plan.segments = plan.batch = 1;
+      Problem problem = make(context, plan, random);
+      CAPTURE(concat(problem.call));
+      const std::vector<double> start = problem.call.c.to_host<double>();
+      gemm(context, problem.call, GemmEngine::native);
+      const std::vector<double> plain = problem.call.c.to_host<double>();
+      problem.call.c.write(std::span<const double>(start));
+      problem.call.b_panels = pack_b(context, problem.call, GemmEngine::native);
+      gemm(context, problem.call, GemmEngine::native);
+      CHECK(problem.call.c.to_host<double>() == plain);
+    }
+    GemmCall call = make(context, {.m = 4, .n = 5, .k = 6}, random).call;
+    call.b_panels = pack_b(context, call, GemmEngine::native);
+    CHECK(pack_b(context, call, GemmEngine::clblast).empty());
+    call.a_transposed = true, call.a_ld = 4;
+    CHECK_THROWS_AS(gemm(context, call), Error);
+  }
+}

@@ -27,7 +27,32 @@ inline GemmEngine gemm_engine_wish() {
   return wish;
 }
 
+inline GemmEngine choose_engine(const Context& context, GemmEngine engine) {
+  if (engine == GemmEngine::automatic) engine = gemm_engine_wish();
+  if (engine == GemmEngine::automatic)
+    engine = context.device().is_cpu() ? GemmEngine::native : GemmEngine::clblast;
+  return engine;
+}
+
 }  // namespace detail
+
+/// B of a product that comes again and again, in the order in which the native engine reads it; empty where
+/// another engine multiplies. Takes m, a and c of the call for unknown. To be made anew when B changes.
+inline Tensor pack_b(const Context& context, const GemmCall& call,
+                     GemmEngine engine = GemmEngine::automatic) {
+  if (detail::choose_engine(context, engine) != GemmEngine::native) return {};
+  require(call.segments == 1 && call.batch == 1 && call.n > 0 && call.k > 0 && !call.b.empty(),
+          "pack_b: one B of at least one row and column expected");
+  detail::check_matrix(call, "B", call.b, call.b_offset[0], call.b_transposed ? call.n : call.k,
+                       call.b_transposed ? call.k : call.n, call.b_ld, 0);
+  const std::size_t columns = 2 * context.vector_width(), panels = (call.n + columns - 1) / columns;
+  const std::size_t block = context.device().is_cpu() ? 768 : 32;  // BLOCK of cl/gemm.cl
+  Tensor packed(context, {panels, call.k, columns});
+  context.launch("gemm", "gemm_pack", Grid::groups(panels, (call.k + block - 1) / block),
+                 detail::At{call.b, call.b_offset[0]}, call.b_transposed ? std::size_t{1} : call.b_ld,
+                 call.b_transposed ? call.b_ld : std::size_t{1}, call.n, call.k, packed);
+  return packed;
+}
 
 /// Enqueues the product. Throws an Error with the sizes when something does not lie inside its tensor. With k
 /// = 0 the sum is what it starts from. On the native engine an element's value does not depend on m, n or the
@@ -37,10 +62,7 @@ inline void gemm(const Context& context, const GemmCall& call, GemmEngine engine
   if (call.m == 0 || call.n == 0 || call.batch == 0) return;
   context.count_gemm_flops(2.0 * static_cast<double>(call.m * call.n) *
                            static_cast<double>(call.k * call.segments * call.batch));
-  if (engine == GemmEngine::automatic) engine = detail::gemm_engine_wish();
-  if (engine == GemmEngine::automatic)
-    engine = context.device().is_cpu() ? GemmEngine::native : GemmEngine::clblast;
-  if (engine == GemmEngine::clblast && detail::clblast_can(call))
+  if (detail::choose_engine(context, engine) == GemmEngine::clblast && detail::clblast_can(call))
     detail::gemm_clblast(context, call);
   else
     detail::gemm_native(context, call);

@@ -24,6 +24,10 @@ struct GemmCall {
   std::size_t c_offset = 0;
   std::size_t batch = 1, a_batch_stride = 0, b_batch_stride = 0, c_batch_stride = 0;
   bool accumulate = false;  ///< start from what C holds
+  /// B once more, as pack_b() returned it for this product's b, b_offset[0], b_ld, b_transposed, n and k; or
+  /// empty. Saves reading B in its own order time after time; changes no bit. Not for several segments,
+  /// batches or a transposed A.
+  Tensor b_panels = {};
   /// Applied to the sum in this order: + bias[j], + residual[residual_offset + i * residual_ld + j], ReLU.
   Tensor bias = {}, residual = {};  ///< absent when empty; the same for every problem of the batch
   std::size_t residual_offset = 0, residual_ld = 0;
@@ -90,6 +94,9 @@ inline void check_gemm(const Context& context, const GemmCall& g) {
             g.residual_offset, ") needs ", end, " elements, its tensor ", ShapeOf{g.residual}, " has ",
             g.residual.size());
   }
+  if (!g.b_panels.empty())
+    require(g.segments == 1 && g.batch == 1 && !g.a_transposed, g,
+            ": a packed B is for one segment, no batch and A not transposed");
   for (const Tensor* tensor : {&g.a, &g.b, &g.c, &g.bias, &g.residual})
     require(tensor->empty() || tensor->context() == context, g, ": a tensor belongs to another context");
 }

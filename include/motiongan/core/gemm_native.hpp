@@ -31,6 +31,17 @@ inline GemmSplit split_gemm(const Context& context, const GemmCall& g) {
   return {rows, at_once, at_once};
 }
 
+/// The same for a packed B: it costs nothing to cut it finely, but that every group reads its panels anew.
+inline GemmSplit split_packed(const Context& context, const GemmCall& g) {
+  const std::size_t columns = 2 * context.vector_width();
+  const std::size_t tile = context.vector_width() * context.real_size() == 64 ? 12 : 6;
+  const std::size_t panels = (g.n + columns - 1) / columns, wanted = 8 * context.device().compute_units;
+  if (g.m == 1 && panels >= wanted) return {1, 4, 1};
+  const std::size_t row_groups = (wanted + panels - 1) / panels;
+  const std::size_t rows = (g.m + row_groups - 1) / row_groups;
+  return {(rows + tile - 1) / tile * tile, 1, 1};
+}
+
 /// The kernel's Numbers (cl/gemm.cl), field by field.
 struct GemmNumbers {
   cl_uint m, n, k, segments, flags;
@@ -50,7 +61,8 @@ inline void gemm_native(const Context& context, const GemmCall& g) {
   const auto narrow = [](std::size_t value) { return static_cast<cl_uint>(value); };
   const auto first = [&](const Tensor& t) { return t.empty() ? 0 : narrow(t.offset()); };
   const auto buffer = [&](const Tensor& t) { return t.empty() ? g.c.buffer() : t.buffer(); };
-  const GemmSplit split = split_gemm(context, g);
+  const bool is_packed = !g.b_panels.empty();
+  const GemmSplit split = is_packed ? split_packed(context, g) : split_gemm(context, g);
   GemmNumbers to{};
   to.m = narrow(g.m), to.n = narrow(g.n), to.k = narrow(g.k);
   to.segments = narrow(g.segments), to.flags = gemm_flags(g);
@@ -66,9 +78,11 @@ inline void gemm_native(const Context& context, const GemmCall& g) {
   to.rows_per_group = narrow(split.rows), to.panels_per_group = narrow(split.panels);
   to.panels_at_once = narrow(split.panels_at_once);
   const std::size_t columns = 2 * context.vector_width() * split.panels;
-  context.launch("gemm", "gemm",
+  if (is_packed) to.b_first = first(g.b_panels);
+  context.launch("gemm", is_packed ? "gemm_packed" : "gemm",
                  Grid::groups((g.n + columns - 1) / columns, (g.m + split.rows - 1) / split.rows, g.batch),
-                 buffer(g.a), buffer(g.b), g.c.buffer(), buffer(g.bias), buffer(g.residual), to);
+                 buffer(g.a), buffer(is_packed ? g.b_panels : g.b), g.c.buffer(), buffer(g.bias),
+                 buffer(g.residual), to);
 }
 
 }  // namespace motiongan::detail

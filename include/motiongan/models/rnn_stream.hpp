@@ -237,6 +237,14 @@ class RnnStream {
     move_ = product(rows_, width(), w.diff.value(), dof_, k_, rows_, width());
     move_.bias = w.diff_bias.value();
     move_.residual = rows_, move_.residual_ld = width();
+    for (auto [call, panels] : {std::pair{&noise_, &panels_[0]},
+                                {&plot_, &panels_[1]},
+                                {&first_, &panels_[2]},
+                                {&second_, &panels_[3]},
+                                {&move_, &panels_[4]}}) {
+      if (panels->empty()) *panels = pack_b(context_, *call);
+      call->b_panels = *panels;
+    }
   }
 
   /// After motions came or went.
@@ -301,6 +309,7 @@ class RnnStream {
   Tensor c0_, c1_, h_txt_;  // [capacity, k]
   Tensor z_, hidden_, plots_, gates_, made_;
   GemmCall noise_, plot_, first_, second_, move_;
+  std::array<Tensor, 5> panels_;  // their weights, packed
   std::vector<float> host_;
   std::vector<double> host_double_;
 };

@@ -75,6 +75,8 @@ inline RolloutTrace rollout_forward(const Tensor& given, const Tensor& x_gates, 
   second.bias = w.bias1.value();
   move.b = w.diff.value(), move.b_ld = k, move.c = move.residual = trace.rows;
   move.c_ld = move.residual_ld = s.width(), move.bias = w.diff_bias.value();
+  // The weights are read in every step: in the order of the engine.
+  for (GemmCall* call : {&first, &second, &move}) call->b_panels = pack_b(context, *call);
   for (std::size_t t = 1; t < frames; ++t) {
     first.a_offset[0] = s.pose_at(t - 1);
     first.c_offset = first.residual_offset = s.gates_at(t);
@@ -118,6 +120,7 @@ inline std::vector<Var> rollout_backward(const RolloutTrace& trace, const Node& 
   move.a = rows, move.a_ld = s.width(), move.b = self.inputs[5].value(), move.b_ld = k;
   second.a = gates1, second.a_ld = 4 * k, second.b = self.inputs[3].value(), second.b_ld = 2 * k;
   first.a = gates0, first.a_ld = 4 * k, first.b = self.inputs[2].value(), first.b_ld = s.dof + k;
+  for (GemmCall* call : {&move, &second, &first}) call->b_panels = pack_b(context, *call);
   for (std::size_t t = frames; t-- > 1;) {
     if (t >= s.given) {
       move.a_offset[0] = s.pose_at(t);
