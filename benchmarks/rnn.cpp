@@ -1,0 +1,106 @@
+// The recurrent half of DVGAN beside PyTorch: the names and the work of `torch_peer.py speed --models
+// rnn,rnn_critic` (500 words, 93 dof, 64 frames, k = 256; steps include their optimiser, the critic's makes
+// its fakes), and how many frames per second a stream of characters makes, frame by frame.
+//   bench_rnn [--json] [--peer torch_peer.py] [--seconds 4]
+// With --peer the same steps are timed in PyTorch afterwards, in a process of its own, and the ratio is
+// given.
+#include <motiongan/models/cnn_critic.hpp>
+#include <motiongan/models/rnn_critic.hpp>
+#include <motiongan/models/rnn_stream.hpp>
+#include <motiongan/optim/adam.hpp>
+#include <motiongan/train/wgan_gp.hpp>
+
+#include "steps.hpp"
+
+using namespace motiongan;
+using bench::measure;
+using bench::Measured;
+
+namespace {
+
+constexpr std::size_t frames = 64, dof = 93, vocabulary = 500, hidden = 256;
+
+std::vector<std::vector<int>> random_sentences(std::size_t count) {
+  std::vector<std::vector<int>> sentences(count);
+  for (std::uint32_t b = 0; b < count; ++b)
+    for (std::uint32_t i = 0; i < 6; ++i)
+      sentences[b].push_back(
+          static_cast<int>(random_below({.seed = 9, .stream = Stream::captions}, b, vocabulary, i)));
+  return sentences;
+}
+
+/// As a user samples: the words are new each time, the model's weights are not.
+Measured sample(const Context& context, const RnnGenerator& generator, std::size_t batch, double seconds) {
+  RnnStream stream(generator);
+  const auto sentences = random_sentences(batch);
+  std::uint32_t first = 0;
+  return measure(context, "dvgan_rnn_sample_n64_b" + std::to_string(batch), seconds, [&] {
+    std::vector<StreamStart> starts;
+    for (const auto& sentence : sentences) starts.push_back({sentence, 1, first++});
+    stream.add(starts);
+    stream.step(frames);
+    while (stream.size() > 0) stream.remove(stream.id_of(stream.size() - 1));
+  });
+}
+
+/// Frames per second of `count` characters that all go on by one frame at a time.
+Measured streaming(const Context& context, const RnnGenerator& generator, std::size_t count, double seconds) {
+  RnnStream stream(generator);
+  std::vector<StreamStart> starts;
+  for (const auto& sentence : random_sentences(count))
+    starts.push_back({sentence, 1, static_cast<std::uint32_t>(starts.size())});
+  stream.add(starts);
+  constexpr std::size_t steps = 16;  // a measurement: plots are made for up to 16 frames ahead
+  Measured m = measure(context, "dvgan_rnn_stream_" + std::to_string(count), seconds, [&] {
+    for (std::size_t i = 0; i < steps; ++i) stream.step(1);
+  });
+  m.extra["frames_per_second"] = static_cast<double>(steps * count) / m.ms * 1e3;
+  m.extra["ms_per_step"] = m.ms / steps;
+  return m;
+}
+
+std::vector<Measured> ours(const Context& context, double seconds) {
+  constexpr std::size_t batch = 64;
+  RnnGenerator generator(Initializer(context, 1),
+                         {.vocabulary = vocabulary, .dof = dof, .frames = frames, .hidden = hidden});
+  CnnCritic cnn(Initializer(context, 2),
+                {.vocabulary = vocabulary, .dof = dof, .frames = frames, .hidden = hidden});
+  RnnCritic rnn(Initializer(context, 3), {.vocabulary = vocabulary, .dof = dof, .hidden = hidden});
+  Adam generator_adam(named_parameters(generator)), critic_adam(named_parameters(rnn));
+  const Sentences text(context, random_sentences(batch), vocabulary);
+  const Tensor real = random_normal(context, {.seed = 5}, frames, batch, dof);
+  std::uint32_t step = 0;
+  const auto fake = [&] {
+    return generator(text, generator.noise(context, {.seed = 1, .step = ++step}, batch, frames));
+  };
+  const auto generator_step = [&] {
+    Var h_txt;
+    {
+      const NoGrad values_only;
+      h_txt = cnn.encode_text(text);
+    }
+    generator_adam.step(grad(generator_loss(cnn(fake(), h_txt)), generator_adam.parameters()));
+  };
+  const auto critic_step = [&] {
+    Tensor made;
+    {
+      const NoGrad values_only;
+      made = fake().value();
+    }
+    const Var h_txt = rnn.encode_text(text), pairs = concat_axis({h_txt, h_txt}, 0);
+    const CriticLoss loss = critic_loss(
+        [&](const Var& x) { return rnn(x, pairs); }, [&](const Var& x) { return rnn(x, h_txt); }, real, made,
+        random_uniform(context, {.seed = 1, .stream = Stream::mix, .step = step}, batch), 10);
+    critic_adam.step(grad(loss.loss, critic_adam.parameters()));
+  };
+  std::vector<Measured> all{sample(context, generator, 64, seconds), sample(context, generator, 1, seconds),
+                            measure(context, "dvgan_rnn_generator_step_n64_b64", seconds, generator_step),
+                            measure(context, "dvgan_rnn_critic_step_n64_b64", seconds, critic_step)};
+  for (const std::size_t count : {1u, 10u, 100u, 1000u})
+    all.push_back(streaming(context, generator, count, seconds));
+  return all;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) { return bench::main("bench_rnn", "rnn,rnn_critic", ours, argc, argv); }
