@@ -48,33 +48,46 @@ struct LstmPass {
   Tensor h_before(std::size_t t) const { return t > 0 ? state_at(states, t - 1) : h_first; }
 };
 
-/// to[t] = h W_hh^T + from[t] for h [B, k]: what a state does to the gates of step t.
-inline void add_recurrence(const LstmPass& pass, const Tensor& h, const Tensor& from, const Tensor& to,
-                           std::size_t t) {
+/// The weights are the same at every step: they are packed once for all.
+inline void pack_weights(const LstmPass& pass, GemmCall& call) {
+  if (pass.frames() > 2) call.b_panels = pack_b(pass.context(), call);
+}
+
+/// to[t] = h W_hh^T + from[t], with h [B, k] and t yet to be named: what a state does to the next gates.
+inline GemmCall recurrence(const LstmPass& pass, const Tensor& from, const Tensor& to) {
   GemmCall call;
   call.m = pass.batch();
   call.n = call.c_ld = call.residual_ld = 4 * pass.hidden();
   call.k = call.a_ld = call.b_ld = pass.hidden();
-  call.a = h;
   call.b = pass.w_hh;
   call.b_transposed = true;
   call.c = to;
   call.residual = from;
-  call.c_offset = call.residual_offset = t * 4 * pass.slab();
-  gemm(pass.context(), call);
+  pack_weights(pass, call);
+  return call;
+}
+inline void run_step(const LstmPass& pass, GemmCall& recurrence, const Tensor& h, std::size_t t) {
+  recurrence.a = h;
+  recurrence.c_offset = recurrence.residual_offset = t * 4 * pass.slab();
+  gemm(pass.context(), recurrence);
 }
 
-/// to = rows W_hh, or += : what the gradient of a step's gates [B, 4k] does to the state before, [B, k].
-inline void recurrence_gradient(const LstmPass& pass, const Tensor& rows, const Tensor& to, bool accumulate) {
+/// to = rows W_hh, or +=, with rows [B, 4k] yet to be named: what the gradient of gates does to the state
+/// before, [B, k].
+inline GemmCall recurrence_gradient(const LstmPass& pass, const Tensor& to, bool accumulate) {
   GemmCall call;
   call.m = pass.batch();
   call.n = call.b_ld = call.c_ld = pass.hidden();
   call.k = call.a_ld = 4 * pass.hidden();
-  call.a = rows;
   call.b = pass.w_hh;
   call.c = to;
   call.accumulate = accumulate;
-  gemm(pass.context(), call);
+  pack_weights(pass, call);
+  return call;
+}
+inline void run_step(const LstmPass& pass, GemmCall& recurrence_gradient, const Tensor& rows) {
+  recurrence_gradient.a = rows;
+  gemm(pass.context(), recurrence_gradient);
 }
 
 /// A matrix turned: [rows, columns] -> [columns, rows].
@@ -124,9 +137,10 @@ inline LstmPass lstm_forward(const Tensor& x_gates, const Tensor& w_hh, const Te
                       .lengths = lengths,
                       .gates = Tensor(context, {frames, batch, 4 * k}),
                       .states = Tensor(context, {2, frames, batch, k})};
+  GemmCall product = recurrence(pass, x_gates, pass.gates);
   for (std::size_t t = 0; t < frames; ++t) {
     const Tensor h_before = pass.h_before(t);
-    add_recurrence(pass, h_before, x_gates, pass.gates, t);
+    run_step(pass, product, h_before, t);
     context.launch("lstm", "lstm_cell", pass.grid(), pass.gates_at(pass.gates, t), pass.c_before(t), h_before,
                    Maybe<Indices>{lengths}, t, pass.state_at(pass.states, t), pass.c_at(t), batch, k);
   }
@@ -151,6 +165,7 @@ inline LstmGradients lstm_backward(const LstmPass& pass, const Tensor& g, const 
                     .h_first = Tensor(context, {batch, k}),
                     .c_first = Tensor(context, {batch, k}),
                     .totals = options.keep_totals ? Tensor(context, {2, frames, batch, k}) : Tensor()};
+  GemmCall product = recurrence_gradient(pass, out.h_first, !pass.lengths.empty());
   for (std::size_t t = frames; t-- > 0;) {
     const Tensor now = pass.gates_at(out.gates, t);
     const Tensor h_total = options.keep_totals ? pass.state_at(out.totals, t) : Tensor(),
@@ -159,7 +174,7 @@ inline LstmGradients lstm_backward(const LstmPass& pass, const Tensor& g, const 
                    pass.c_before(t), pass.state_at(g, t), pass.state_at(g, t, 1),
                    Maybe<Indices>{pass.lengths}, t, std::size_t{t + 1 == frames}, out.h_first, out.c_first,
                    now, Maybe<Tensor>{h_total}, Maybe<Tensor>{c_total}, batch, k);
-    if (t > 0 || options.h_first) recurrence_gradient(pass, now, out.h_first, !pass.lengths.empty());
+    if (t > 0 || options.h_first) run_step(pass, product, now);
   }
   return out;
 }
@@ -179,9 +194,10 @@ inline LstmSlopeGradients lstm_slope_gradients(const LstmPass& pass, const Tenso
   const std::size_t frames = pass.frames(), batch = pass.batch(), k = pass.hidden();
   LstmSlopeGradients out{.g = Tensor(context, {2, frames, batch, k}), .gates = {}, .w_hh = {}};
   const Tensor gates(context, {frames, batch, 4 * k}), direct(context, {frames, batch, k});
+  GemmCall onward = recurrence(pass, u, gates);
   for (std::size_t t = 0; t < frames; ++t) {
     const Tensor now = pass.gates_at(gates, t);
-    if (t > 0) add_recurrence(pass, pass.state_at(out.g, t - 1), u, gates, t);
+    if (t > 0) run_step(pass, onward, pass.state_at(out.g, t - 1), t);
     const Tensor c_before = t > 0 ? pass.state_at(out.g, t - 1, 1) : Tensor(),
                  direct_before = t > 0 ? pass.state_at(direct, t - 1) : Tensor();
     context.launch("lstm", "lstm_slope_forward", pass.grid(), t > 0 ? now : pass.gates_at(u, t),
@@ -192,12 +208,13 @@ inline LstmSlopeGradients lstm_slope_gradients(const LstmPass& pass, const Tenso
   }
   if (!of_gates && !of_w_hh) return out;
   const Tensor h_carry(context, {batch, k}), c_carry(context, {batch, k}), none;
+  GemmCall back = recurrence_gradient(pass, h_carry, false);
   for (std::size_t t = frames; t-- > 0;) {
     const Tensor now = pass.gates_at(gates, t);
     context.launch("lstm", "lstm_slope_backward", pass.grid(), pass.gates_at(pass.gates, t), pass.c_at(t),
                    pass.c_before(t), pass.state_at(direct, t), Maybe<Tensor>{t + 1 < frames ? h_carry : none},
                    c_carry, now, batch, k);
-    if (t > 0) recurrence_gradient(pass, now, h_carry, false);
+    if (t > 0) run_step(pass, back, now);
   }
   out.gates = gates;
   if (of_w_hh) {
