@@ -451,3 +451,21 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_packed(
     }
   }
 }
+
+// out[i][p] = x[p][i], rows of x x_row apart: for a transposed A whose rows are so long that the kernel would
+// read a few numbers of each page. Items: pieces of VW rows and VW columns of x, a row of pieces after
+// another.
+kernel void gemm_turn(global const real* x, uint x_first, uint x_row, uint rows, uint columns,
+                      global real* out, uint out_first) {
+  const uint across = (columns + VW - 1) / VW, item = get_global_id(0);
+  const uint p = item / across * VW, i = item % across * VW;
+  if (p >= rows) return;
+  real square[VW * VW], line[VW];
+  const uint high = min(rows - p, (uint)VW), wide = min(columns - i, (uint)VW);
+  for (uint r = 0; r < high; ++r)
+    vstore(load_some(x + x_first + (p + r) * x_row + i, columns - i), r, square);
+  for (uint c = 0; c < wide; ++c) {
+    for (uint r = 0; r < high; ++r) line[r] = square[r * VW + c];
+    store_some(vload(0, line), out + out_first + (i + c) * rows + p, rows - p);
+  }
+}

@@ -310,3 +310,14 @@ TEST_CASE("a packed B changes no bit, whatever the size, and nothing around C") 
     CHECK_THROWS_AS(gemm(context, call), Error);
   }
 }
+
+TEST_CASE("native: a transposed A with long rows, which is turned first") {
+  std::mt19937 random(12);
+  for (const Precision precision : {Precision::f32, Precision::f64})
+    for (const std::size_t m : {64u, 101u, 600u}) {
+      Plan plan{.m = m, .n = 65, .k = 300, .a_transposed = true, .extra_ld = 513, .offset = 3};
+      check(precision, plan, GemmEngine::native, random);
+      plan.accumulate = plan.bias = true;
+      check(precision, plan, GemmEngine::native, random);
+    }
+}

@@ -56,7 +56,29 @@ struct GemmNumbers {
 };
 inline void add_argument(KernelArguments& to, const GemmNumbers& numbers) { to.set(numbers); }
 
+/// Whether a transposed A is worth turning round first: the kernel reads it by columns, tile after tile and
+/// panel after panel, and where its rows are long each number of a column lies in a page of its own.
+inline bool should_turn(const GemmCall& g) {
+  return g.a_transposed && g.segments == 1 && g.batch == 1 && g.a_ld >= 512 && g.m >= 64 && g.n >= 64 &&
+         g.k >= 256;
+}
+
+inline void gemm_native(const Context& context, const GemmCall& g);
+
+inline void gemm_turned(const Context& context, GemmCall g) {
+  const Tensor turned(context, {g.m, g.k});
+  const std::size_t width = context.vector_width();
+  context.launch("gemm", "gemm_turn", Grid::items(((g.k + width - 1) / width) * ((g.m + width - 1) / width)),
+                 At{g.a, g.a_offset[0]}, g.a_ld, g.k, g.m, turned);
+  g.a = turned;
+  g.a_offset[0] = 0;
+  g.a_ld = g.k;
+  g.a_transposed = false;
+  gemm_native(context, g);
+}
+
 inline void gemm_native(const Context& context, const GemmCall& g) {
+  if (should_turn(g)) return gemm_turned(context, g);
   // What does not fit 32 bits belongs to a dimension of size 1 and is never used, see check_gemm.
   const auto narrow = [](std::size_t value) { return static_cast<cl_uint>(value); };
   const auto first = [&](const Tensor& t) { return t.empty() ? 0 : narrow(t.offset()); };
