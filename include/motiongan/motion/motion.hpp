@@ -110,43 +110,66 @@ inline Clip to_clip(const Motion& motion, std::string id) {
   return clip;
 }
 
+/// Where a frame of a motion at another rate lies: `t` of the way from an old frame to the one after it.
+struct BetweenFrames {
+  std::size_t before = 0, after = 0;  ///< the same where the old frame is taken as it is
+  double t = 0;
+};
+
+/// The frames that resample() makes of a motion of `frames` frames. Error if a rate is not positive, or for a
+/// billion frames.
+inline std::size_t resampled_frames(std::size_t frames, double from, double to) {
+  require(std::isfinite(to) && to > 0 && std::isfinite(from) && from > 0, "cannot resample from ", from,
+          " to ", to, " frames per second, expected more than 0");
+  if (frames == 0 || from == to) return frames;
+  const double count = std::floor(static_cast<double>(frames - 1) * to / from * (1 + 1e-12) + 1e-9);
+  require(count < 1e9, "resampling ", frames, " frames from ", from, " to ", to, " per second would make ",
+          count, " frames, expected fewer than 1e9");
+  return static_cast<std::size_t>(count) + 1;
+}
+
+/// Where new frame `f` lies in a motion of `frames` frames; `step` is how many old frames make a new one.
+inline BetweenFrames between_frames(std::size_t f, double step, std::size_t frames) {
+  const double at = std::min(static_cast<double>(f) * step, static_cast<double>(frames - 1));
+  const double nearest = std::round(at);
+  if (std::abs(at - nearest) < 1e-9) {  // an old frame is taken as it is
+    const auto same = static_cast<std::size_t>(nearest);
+    return {same, same, 0};
+  }
+  const auto before = static_cast<std::size_t>(std::floor(at));
+  return {before, before + 1, at - std::floor(at)};
+}
+
+/// Appends the frame there to `out`: rotations by slerp, positions linearly.
+inline void append_between(const Motion& motion, const BetweenFrames& at, Motion& out) {
+  for (std::size_t j = 0; j < motion.skeleton.size(); ++j) {
+    const Vec3 &a = motion.position(at.before, j), &b = motion.position(at.after, j);
+    const Quat &q = motion.rotation(at.before, j), &r = motion.rotation(at.after, j);
+    out.positions.push_back(at.t == 0 ? a : add(scale(a, 1 - at.t), scale(b, at.t)));
+    out.rotations.push_back(at.t == 0 ? q : slerp(q, r, at.t));
+  }
+  ++out.frames;
+}
+
 /// The motion between its first and last frame at another rate: rotations by slerp, positions linearly. The
 /// new frames lie at 0, 1/rate, 2/rate ... and none after the last old one.
 inline Motion resample(const Motion& motion, double rate) {
   check_motion(motion);
   require(std::isfinite(rate) && rate > 0, "cannot resample to ", rate,
           " frames per second, expected more than 0");
-  if (motion.frames == 0 || rate == motion.rate) {
-    Motion same = motion;
-    same.rate = rate;
-    return same;
-  }
-  const std::size_t joints = motion.skeleton.size();
-  const std::size_t last = motion.frames - 1;
-  const double step = motion.rate / rate;  // old frames per new one
-  const double count = std::floor(static_cast<double>(last) / step * (1 + 1e-12) + 1e-9);
-  require(count < 1e9, "resampling ", motion.frames, " frames from ", motion.rate, " to ", rate,
-          " per second would make ", count, " frames, expected fewer than 1e9");
   Motion out;
+  if (motion.frames == 0 || rate == motion.rate) {
+    out = motion;
+    out.rate = rate;
+    return out;
+  }
+  const std::size_t frames = resampled_frames(motion.frames, motion.rate, rate);
   out.skeleton = motion.skeleton;
   out.rate = rate;
-  out.frames = static_cast<std::size_t>(count) + 1;
-  out.rotations.reserve(out.frames * joints);
-  out.positions.reserve(out.frames * joints);
-  for (std::size_t f = 0; f < out.frames; ++f) {
-    const double at = std::min(static_cast<double>(f) * step, static_cast<double>(last));
-    const double nearest = std::round(at);
-    const bool exact = std::abs(at - nearest) < 1e-9;  // an old frame is taken as it is
-    const auto before = static_cast<std::size_t>(exact ? nearest : std::floor(at));
-    const std::size_t after = std::min(before + 1, last);
-    const double t = exact ? 0 : at - std::floor(at);
-    for (std::size_t j = 0; j < joints; ++j) {
-      const Vec3 &a = motion.position(before, j), &b = motion.position(after, j);
-      out.positions.push_back(t == 0 ? a : add(scale(a, 1 - t), scale(b, t)));
-      out.rotations.push_back(t == 0 ? motion.rotation(before, j)
-                                     : slerp(motion.rotation(before, j), motion.rotation(after, j), t));
-    }
-  }
+  out.rotations.reserve(frames * motion.skeleton.size());
+  out.positions.reserve(frames * motion.skeleton.size());
+  for (std::size_t f = 0; f < frames; ++f)
+    append_between(motion, between_frames(f, motion.rate / rate, motion.frames), out);
   return out;
 }
 
@@ -165,6 +188,19 @@ inline Motion slice(const Motion& motion, std::size_t first, std::size_t count) 
   out.rotations.assign(motion.rotations.begin() + begin, motion.rotations.begin() + end);
   out.positions.assign(motion.positions.begin() + begin, motion.positions.begin() + end);
   return out;
+}
+
+/// One motion after the other, in the skeleton of the first. Error if their joints or rates do not fit.
+inline Motion join(Motion first, const Motion& second) {
+  check_motion(first);
+  check_motion(second);
+  require(first.skeleton.size() == second.skeleton.size() && first.rate == second.rate, "a motion of ",
+          second.skeleton.size(), " joints at ", second.rate, " frames per second cannot follow one of ",
+          first.skeleton.size(), " joints at ", first.rate);
+  first.frames += second.frames;
+  first.rotations.insert(first.rotations.end(), second.rotations.begin(), second.rotations.end());
+  first.positions.insert(first.positions.end(), second.positions.begin(), second.positions.end());
+  return first;
 }
 
 }  // namespace motiongan::motion
