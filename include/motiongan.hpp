@@ -30,6 +30,7 @@
 #include "motiongan/motion/kinematics.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/motion/procedural.hpp"
+#include "motiongan/motion/resampler.hpp"
 #include "motiongan/motion/root_track.hpp"
 #include "motiongan/motion/rotation.hpp"
 #include "motiongan/motion/statistics.hpp"
@@ -47,6 +48,8 @@
 #include "motiongan/train/progress.hpp"
 #include "motiongan/train/train.hpp"
 #include "motiongan/train/wgan_gp.hpp"
+//
+#include "motiongan/sample/motion_stream.hpp"
 //
 #include "motiongan/eval/drift.hpp"
 #include "motiongan/eval/euler_error.hpp"

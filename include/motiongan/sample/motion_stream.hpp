@@ -1,0 +1,285 @@
+// Characters that move on frame by frame, as a game loop asks for them (SPEC 2: completion and streaming).
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "motiongan/models/dvgan.hpp"
+#include "motiongan/motion/motion.hpp"
+#include "motiongan/motion/resampler.hpp"
+
+namespace motiongan {
+
+/// Names a character for as long as it is in its stream.
+using CharacterId = StreamId;
+
+struct CharacterOptions {
+  std::string text;
+  std::uint64_t seed = 1;
+  std::uint32_t sample = 0;  ///< another sample of a seed is another motion
+  /// What it has done so far, at any rate: it goes on from the last frame. Only needed until it is added.
+  const motion::Motion* prior = nullptr;
+  /// Without a prior: where it begins. Poses with steps and turns (RootRotation::velocity) put the first
+  /// frame there; other forms put the origin there that their positions count from, which the first frame is
+  /// near to. The yaw is left out of RootRotation::expmap.
+  motion::RootTrack at = {};
+};
+
+/// Any number of characters, each with its own text, noise and place in the world, that all move on together.
+/// A character's motion does not depend on which others there are, nor on how many frames a step has: it is
+/// Dvgan::generate's for the same text, seed and sample. step() allocates nothing on the device once it has
+/// made as many frames for as many characters.
+///
+/// They may go on for as long as they like. With RootRotation::velocity nothing grows; with the other forms,
+/// place (and yaw) are counted from the beginning, and leave the range of the training windows when a
+/// character walks far.
+///
+///     MotionStream stream(model);
+///     const CharacterId id = stream.add({.text = "walk"});
+///     stream.step();                              // one frame of all
+///     draw(stream.motion(id));                    // a motion of one frame, placed in the world
+///     stream.set_text(id, "run");
+class MotionStream {
+ public:
+  /// Error for a model with a CNN generator. The weights are taken as they are now.
+  explicit MotionStream(const Dvgan& model) : format_(model.format()), stream_(model.rnn()) {
+    const motion::PoseLayout& layout = format_.layout;
+    if (!layout.has_steps()) return;
+    turn_ = number(layout.yaw_dim());
+    if (!layout.root_position()) return;
+    step_x_ = number(layout.position_dim());
+    step_z_ = number(layout.position_dim() + 2);
+  }
+  MotionStream(const MotionStream&) = delete;
+  MotionStream& operator=(const MotionStream&) = delete;
+
+  std::size_t size() const { return stream_.size(); }
+  double rate() const { return format_.rate; }  ///< frames per second
+  const motion::MotionFormat& format() const { return format_; }
+  /// The model's. The motion of a character that came with a prior has the prior's bone lengths.
+  const motion::Skeleton& skeleton() const { return format_.skeleton(); }
+
+  /// Adds a character; it moves with the next step. Error for a text without a word and for a prior with
+  /// other joints, which are named, or without frames. Words that the training captions did not have count as
+  /// unknown.
+  CharacterId add(const CharacterOptions& options) { return add(std::vector{options}).front(); }
+
+  /// Adds them all together, which costs little more than one. After an Error none was added.
+  std::vector<CharacterId> add(const std::vector<CharacterOptions>& options) {
+    std::vector<Newcomer> newcomers;
+    for (const CharacterOptions& o : options) {
+      // Those that go on from one motion share what was made of it.
+      const auto same = std::find_if(newcomers.begin(), newcomers.end(), [&](const Newcomer& n) {
+        return o.prior != nullptr && n.prior == o.prior;
+      });
+      Newcomer n = same != newcomers.end() ? *same : newcomer(o);
+      n.start = {format_.vocabulary.encode(o.text), o.seed, o.sample};
+      newcomers.push_back(std::move(n));
+    }
+    std::map<std::size_t, std::vector<std::size_t>> by_length;  // of the priors; the stream takes equal ones
+    for (std::size_t i = 0; i < newcomers.size(); ++i)
+      by_length[newcomers[i].poses->size() / format_.dof()].push_back(i);
+    std::vector<CharacterId> ids(options.size());
+    std::vector<CharacterId> added;
+    try {
+      for (const auto& [frames, members] : by_length) {
+        const std::vector<CharacterId> some = add_group(newcomers, members, frames);
+        added.insert(added.end(), some.begin(), some.end());
+        for (std::size_t i = 0; i < members.size(); ++i) {
+          ids[members[i]] = some[i];
+          characters_.emplace(some[i], std::move(newcomers[members[i]].character));
+        }
+      }
+    } catch (...) {
+      for (const CharacterId id : added) remove(id);
+      throw;
+    }
+    return ids;
+  }
+
+  /// Takes a character out. Error where there is none of that id, as for all that takes an id.
+  void remove(CharacterId id) {
+    stream_.remove(id);
+    characters_.erase(id);
+  }
+
+  /// What it does from now on. One frame is always made ahead, so the next one still follows the old text.
+  void set_text(CharacterId id, const std::string& text) {
+    stream_.set_sentence(id, format_.vocabulary.encode(text));
+  }
+
+  /// Moves all characters on by so many frames. Error for 0 frames.
+  void step(std::size_t frames = 1) {
+    require(frames > 0, "a step of 0 frames was asked for, expected at least 1");
+    const std::span<const float> made = stream_.step(frames);  // [frames, size, dof]
+    const std::size_t dof = format_.dof(), rows = size();
+    poses_.resize(made.size());
+    frames_ = frames;
+    for (std::size_t row = 0; row < rows; ++row) {
+      for (std::size_t f = 0; f < frames; ++f)
+        std::copy_n(made.begin() + static_cast<std::ptrdiff_t>((f * rows + row) * dof), dof,
+                    poses_.begin() + static_cast<std::ptrdiff_t>((row * frames + f) * dof));
+      Character& c = characters_.at(stream_.id_of(row));
+      c.row = row;
+      c.track = c.next_track;
+      if (format_.layout.has_steps())
+        for (std::size_t f = 0; f < frames; ++f) follow(c.next_track, &poses_[(row * frames + f) * dof]);
+    }
+  }
+
+  /// The frames of the last step, placed in the world, at rate(). Error for a character that was added after
+  /// it.
+  motion::Motion motion(CharacterId id) const {
+    const Character& c = character(id);
+    motion::RootTrack track = c.track;
+    motion::Motion made = format_.to_motion(poses(id), &track);
+    const std::size_t root = format_.layout.root(), joints = made.skeleton.size();
+    const bool moves = format_.layout.root_position();
+    if (c.body) made.skeleton = c.body->skeleton;
+    for (std::size_t f = 0; f < made.frames; ++f) {
+      for (std::size_t j = 0; c.body && j < joints; ++j)
+        if (j != root || !moves) made.position(f, j) = c.body->positions[j];
+      if (moves || !c.body) c.origin.place(made.position(f, root));
+      if (c.origin.turn != 0)
+        made.rotation(f, root) = multiply(motion::axis_rotation(1, c.origin.turn), made.rotation(f, root));
+    }
+    return made;
+  }
+
+  /// The same as the model made it, [frames of the last step, dof], normalised; valid until the next step.
+  std::span<const float> poses(CharacterId id) const {
+    const Character& c = character(id);
+    require(c.row.has_value(), "character ", id, " has not moved since it was added; call step()");
+    const std::size_t size = frames_ * format_.dof();
+    return {poses_.data() + *c.row * size, size};
+  }
+
+ private:
+  /// Where the origin of a motion's numbers lies in the world.
+  struct Origin {
+    double turn = 0, from_x = 0, from_z = 0, x = 0, z = 0;
+
+    void place(motion::Vec3& p) const {
+      p[0] -= from_x;
+      p[2] -= from_z;
+      if (turn != 0) motion::turn_ground(p[0], p[2], turn);
+      p[0] += x;
+      p[2] += z;
+    }
+  };
+
+  /// The body of a prior, and where its joints were at the end: those that no pose moves stay there.
+  struct Body {
+    motion::Skeleton skeleton;
+    std::vector<motion::Vec3> positions;  // [joints]
+  };
+
+  struct Character {
+    motion::RootTrack track, next_track;  // before the frames of the last step, and after them
+    Origin origin;
+    std::shared_ptr<const Body> body;  // null: the model's
+    std::optional<std::size_t> row;    // in poses_
+  };
+
+  struct Newcomer {
+    const motion::Motion* prior;
+    std::shared_ptr<const std::vector<float>> poses;  // of the prior, [frames, dof]
+    Character character;
+    StreamStart start;
+  };
+
+  /// A pose's number on the way to motion: as it is kept, or the mean where it was dropped.
+  struct Number {
+    std::optional<std::size_t> kept;
+    double mean = 0, std = 0;
+    double of(const float* pose) const { return kept ? mean + std * static_cast<double>(pose[*kept]) : mean; }
+  };
+
+  const Character& character(CharacterId id) const {
+    stream_.row_of(id);  // tells of an id that is gone
+    return characters_.at(id);
+  }
+
+  Newcomer newcomer(const CharacterOptions& o) const {
+    const motion::PoseLayout& layout = format_.layout;
+    Newcomer n{o.prior, std::make_shared<const std::vector<float>>(), {}, {}};
+    Character& c = n.character;
+    if (o.prior == nullptr) {
+      if (layout.has_steps()) c.next_track = o.at;
+      if (!layout.has_steps() || !layout.root_position()) c.origin.x = o.at.x, c.origin.z = o.at.z;
+      if (layout.has_yaw() && !layout.has_steps()) c.origin.turn = o.at.yaw;
+      return n;
+    }
+    require(o.prior->frames > 0, "the prior has no frames; a motion can only go on from a frame");
+    format_.require_skeleton(o.prior->skeleton, "the prior");
+    motion::Motion prior = *o.prior;
+    if (std::abs(prior.rate / rate() - 1) > 1e-6) prior = motion::resample_to_end(prior, rate());
+    prior.rate = rate();
+    std::vector<float> poses = format_.encode_window(prior);
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      require(std::isfinite(poses[i]), "frame ", i / format_.dof(),
+              " of the prior has a number that is not finite");
+    const auto end = static_cast<std::ptrdiff_t>(prior.positions.size());
+    c.body = std::make_shared<const Body>(
+        Body{prior.skeleton,
+             {prior.positions.begin() + end - static_cast<std::ptrdiff_t>(prior.skeleton.size()),
+              prior.positions.end()}});
+    if (layout.has_steps()) {
+      c.next_track = layout.track_of(prior, prior.frames - 1);
+    } else {
+      const motion::RootTrack to = layout.track_of(prior, 0),
+                              from = layout.track_of(format_.to_motion(std::span(poses).first(format_.dof())),
+                                                     0);
+      c.origin = {layout.has_yaw() ? to.yaw - from.yaw : 0, from.x, from.z, to.x, to.z};
+    }
+    n.poses = std::make_shared<const std::vector<float>>(std::move(poses));
+    return n;
+  }
+
+  /// Adds those of `newcomers` whose priors have `frames` frames.
+  std::vector<CharacterId> add_group(const std::vector<Newcomer>& newcomers,
+                                     const std::vector<std::size_t>& members, std::size_t frames) {
+    const std::size_t dof = format_.dof();
+    std::vector<StreamStart> starts;
+    std::vector<float> priors;  // [frames, members, dof]
+    for (const std::size_t i : members) starts.push_back(newcomers[i].start);
+    for (std::size_t f = 0; f < frames; ++f)
+      for (const std::size_t i : members) {
+        const auto first = newcomers[i].poses->begin() + static_cast<std::ptrdiff_t>(f * dof);
+        priors.insert(priors.end(), first, first + static_cast<std::ptrdiff_t>(dof));
+      }
+    return stream_.add(starts, priors, frames);
+  }
+
+  /// A pose's number by its place in the layout.
+  Number number(std::size_t dim) const {
+    const motion::Normalizer& n = format_.normalizer;
+    const auto found = std::lower_bound(n.kept().begin(), n.kept().end(), dim);
+    Number out{std::nullopt, n.mean()[dim], n.std()[dim]};
+    if (found != n.kept().end() && *found == dim)
+      out.kept = static_cast<std::size_t>(found - n.kept().begin());
+    return out;
+  }
+
+  /// Takes the track on by one pose.
+  void follow(motion::RootTrack& track, const float* pose) const {
+    motion::advance(track, step_x_.of(pose), step_z_.of(pose), turn_.of(pose));
+  }
+
+  motion::MotionFormat format_;
+  RnnStream stream_;
+  Number step_x_, step_z_, turn_;  // with RootRotation::velocity
+  std::map<CharacterId, Character> characters_;
+  std::size_t frames_ = 0;
+  std::vector<float> poses_;  // of the last step, [characters, frames, dof]
+};
+
+}  // namespace motiongan
