@@ -87,10 +87,10 @@ TEST_CASE("a penalty on the gradient through two layers") {
   const Var h = constant(first[2]), c = constant(first[3]);
   const auto penalty_of = [&](const Layer& layer) -> Function {
     return [=](const std::vector<Var>& v) {
-      const Var x = v[0], inner = hidden_states(layer(x, v[1], h, c));
+      const Var inner = hidden_states(layer(v[0], v[1], h, c));
       const Var gates = reshape(matmul(reshape(inner, {frames * batch, k}), v[3]), {frames, batch, 4 * k});
       const Var score = sum(square(hidden_states(layer(gates, v[2], h, c))));
-      const Var slope = grad(score, {x}, {.create_graph = true})[0];
+      const Var slope = grad(score, {v[0]}, {.create_graph = true})[0];
       return mean(square(sqrt(sum_per_sample(square(slope))) - 1));
     };
   };

@@ -131,12 +131,12 @@ inline LstmPass lstm_forward(const Tensor& x_gates, const Tensor& w_hh, const Te
                              const Tensor& c_first, const Indices& lengths) {
   const std::size_t frames = x_gates.dim(0), batch = x_gates.dim(1), k = w_hh.dim(1);
   const Context& context = x_gates.context();
-  const LstmPass pass{.w_hh = w_hh,
-                      .h_first = h_first,
-                      .c_first = c_first,
-                      .lengths = lengths,
-                      .gates = Tensor(context, {frames, batch, 4 * k}),
-                      .states = Tensor(context, {2, frames, batch, k})};
+  LstmPass pass{.w_hh = w_hh,
+                .h_first = h_first,
+                .c_first = c_first,
+                .lengths = lengths,
+                .gates = Tensor(context, {frames, batch, 4 * k}),
+                .states = Tensor(context, {2, frames, batch, k})};
   GemmCall product = recurrence(pass, x_gates, pass.gates);
   for (std::size_t t = 0; t < frames; ++t) {
     const Tensor h_before = pass.h_before(t);
