@@ -413,6 +413,8 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_packed(
   const uint column_begin = get_group_id(0) * g.panels_per_group * COLUMNS;
   const uint column_end = min(n, column_begin + g.panels_per_group * COLUMNS);
   const size_t a_row = g.a_row, c_row = g.c_row, residual_row = g.residual_row, panel = (size_t)k * COLUMNS;
+  // Rows 4 KB apart share one set of the first cache, which holds eight lines: no more rows at a time then.
+  const uint most = MOST_ROWS > 8 && a_row * REAL_BYTES % 4096 == 0 ? 8 : MOST_ROWS;
   for (uint j = column_begin; j < column_end; j += COLUMNS) {
     global const real* from = b + j / COLUMNS * panel;
     if (row_end - row_begin == 1 && column_end - j >= DIRECT * COLUMNS) {
@@ -429,7 +431,7 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_packed(
     const uint width = min((uint)COLUMNS, column_end - j);
     for (uint i = row_begin, rows; i < row_end; i += rows) {
       const uint left = row_end - i;
-      rows = left >= MOST_ROWS ? MOST_ROWS : left >= 8 ? 8 : left >= 4 ? 4 : left >= 2 ? 2 : 1;
+      rows = left >= most ? most : left >= 8 ? 8 : left >= 4 ? 4 : left >= 2 ? 2 : 1;
       global const real* rows_of_a = a + i * a_row;
       if (flags & ACCUMULATE)
         load_tile(c + i * c_row + j, c_row, rows, width, tile);
@@ -452,20 +454,18 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_packed(
   }
 }
 
-// out[i][p] = x[p][i], rows of x x_row apart: for a transposed A whose rows are so long that the kernel would
-// read a few numbers of each page. Items: pieces of VW rows and VW columns of x, a row of pieces after
-// another.
+// out[j][i] = x[i][j]. Items: squares of VW rows and VW columns of x, a row of squares after another.
 kernel void gemm_turn(global const real* x, uint x_first, uint x_row, uint rows, uint columns,
-                      global real* out, uint out_first) {
+                      global real* out, uint out_first, uint out_row) {
   const uint across = (columns + VW - 1) / VW, item = get_global_id(0);
-  const uint p = item / across * VW, i = item % across * VW;
-  if (p >= rows) return;
+  const uint i = item / across * VW, j = item % across * VW;
+  if (i >= rows) return;
   real square[VW * VW], line[VW];
-  const uint high = min(rows - p, (uint)VW), wide = min(columns - i, (uint)VW);
+  const uint high = min(rows - i, (uint)VW), wide = min(columns - j, (uint)VW);
   for (uint r = 0; r < high; ++r)
-    vstore(load_some(x + x_first + (p + r) * x_row + i, columns - i), r, square);
+    vstore(load_some(x + x_first + (i + r) * x_row + j, columns - j), r, square);
   for (uint c = 0; c < wide; ++c) {
     for (uint r = 0; r < high; ++r) line[r] = square[r * VW + c];
-    store_some(vload(0, line), out + out_first + (i + c) * rows + p, rows - p);
+    store_some(vload(0, line), out + out_first + (j + c) * out_row + i, rows - i);
   }
 }

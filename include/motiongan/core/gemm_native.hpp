@@ -56,29 +56,7 @@ struct GemmNumbers {
 };
 inline void add_argument(KernelArguments& to, const GemmNumbers& numbers) { to.set(numbers); }
 
-/// Whether a transposed A is worth turning round first: the kernel reads it by columns, tile after tile and
-/// panel after panel, and where its rows are long each number of a column lies in a page of its own.
-inline bool should_turn(const GemmCall& g) {
-  return g.a_transposed && g.segments == 1 && g.batch == 1 && g.a_ld >= 512 && g.m >= 64 && g.n >= 64 &&
-         g.k >= 256;
-}
-
-inline void gemm_native(const Context& context, const GemmCall& g);
-
-inline void gemm_turned(const Context& context, GemmCall g) {
-  const Tensor turned(context, {g.m, g.k});
-  const std::size_t width = context.vector_width();
-  context.launch("gemm", "gemm_turn", Grid::items(((g.k + width - 1) / width) * ((g.m + width - 1) / width)),
-                 At{g.a, g.a_offset[0]}, g.a_ld, g.k, g.m, turned);
-  g.a = turned;
-  g.a_offset[0] = 0;
-  g.a_ld = g.k;
-  g.a_transposed = false;
-  gemm_native(context, g);
-}
-
-inline void gemm_native(const Context& context, const GemmCall& g) {
-  if (should_turn(g)) return gemm_turned(context, g);
+inline void launch_gemm(const Context& context, const GemmCall& g) {
   // What does not fit 32 bits belongs to a dimension of size 1 and is never used, see check_gemm.
   const auto narrow = [](std::size_t value) { return static_cast<cl_uint>(value); };
   const auto first = [&](const Tensor& t) { return t.empty() ? 0 : narrow(t.offset()); };
@@ -105,6 +83,46 @@ inline void gemm_native(const Context& context, const GemmCall& g) {
                  Grid::groups((g.n + columns - 1) / columns, (g.m + split.rows - 1) / split.rows, g.batch),
                  buffer(g.a), buffer(is_packed ? g.b_panels : g.b), g.c.buffer(), buffer(g.bias),
                  buffer(g.residual), to);
+}
+
+/// out[j][i] = x[i][j]; both with rows of their own length.
+inline void launch_turn(const Context& context, const At& x, std::size_t ld, std::size_t rows,
+                        std::size_t columns, const At& out, std::size_t out_ld) {
+  const auto pieces = [&](std::size_t n) {
+    return (n + context.vector_width() - 1) / context.vector_width();
+  };
+  context.launch("gemm", "gemm_turn", Grid::items(pieces(rows) * pieces(columns)), x, ld, rows, columns, out,
+                 out_ld);
+}
+
+/// A transposed A is read by columns, tile after tile and panel after panel. Where its rows are long, each
+/// number of a column lies in a page of its own: then A is turned first; or, where B's rows are shorter and
+/// C is nothing but the product, both change places and C is turned. The same bits in any case.
+inline void gemm_native(const Context& context, const GemmCall& wanted) {
+  const bool far = wanted.a_transposed && wanted.segments == 1 && wanted.batch == 1 && wanted.a_ld >= 512 &&
+                   wanted.m >= 64 && wanted.n >= 64 && wanted.k >= 256;
+  if (!far) return launch_gemm(context, wanted);
+  GemmCall g = wanted;
+  const bool only_product =
+      !g.accumulate && g.bias.empty() && g.residual.empty() && !g.relu && !g.b_transposed;
+  if (only_product && g.b_ld < g.a_ld) {
+    std::swap(g.a, g.b);
+    std::swap(g.a_ld, g.b_ld);
+    std::swap(g.a_offset[0], g.b_offset[0]);
+    std::swap(g.m, g.n);
+    g.c = Tensor(context, {g.m, g.n});
+    g.c_offset = 0;
+    g.c_ld = g.n;
+    launch_gemm(context, g);
+    return launch_turn(context, {g.c, 0}, g.n, g.m, g.n, {wanted.c, wanted.c_offset}, wanted.c_ld);
+  }
+  const Tensor turned(context, {g.m, g.k});
+  launch_turn(context, {g.a, g.a_offset[0]}, g.a_ld, g.k, g.m, {turned, 0}, g.k);
+  g.a = turned;
+  g.a_offset[0] = 0;
+  g.a_ld = g.k;
+  g.a_transposed = false;
+  launch_gemm(context, g);
 }
 
 }  // namespace motiongan::detail
