@@ -39,7 +39,7 @@ Measured sample(const Context& context, const RnnGenerator& generator, std::size
     for (const auto& sentence : sentences) starts.push_back({sentence, 1, first++});
     stream.add(starts);
     stream.step(frames);
-    while (stream.size() > 0) stream.remove(stream.id_of(stream.size() - 1));
+    stream.clear();
   });
 }
 

@@ -127,25 +127,25 @@ static inline void pack_narrow_rows(global const real* b, size_t stride, uint co
 #else
 #define GATHER(i) AT(i)
 #endif
+static inline void pack_transposed_half(global const real* b, size_t stride, uint count, uint width,
+                                        realv* to) {
+  const uint whole = count / 4 * 4, last = width - 1;
+  for (uint p = 0; p < whole; p += 4, b += 4, to += 8) {
+    const realv r0 = GATHER(0), r1 = GATHER(1), r2 = GATHER(2), r3 = GATHER(3);
+    const realv even01 = (realv)(r0.even, r1.even), even23 = (realv)(r2.even, r3.even);
+    const realv odd01 = (realv)(r0.odd, r1.odd), odd23 = (realv)(r2.odd, r3.odd);
+    to[0] = (realv)(even01.even, even23.even);
+    to[2] = (realv)(odd01.even, odd23.even);
+    to[4] = (realv)(even01.odd, even23.odd);
+    to[6] = (realv)(odd01.odd, odd23.odd);
+  }
+  for (uint p = whole; p < count; ++p, ++b, to += 2)
+    for (uint j = 0; j < VW; ++j) ((real*)to)[j] = b[min(j, last) * stride];
+}
 static inline void pack_transposed(global const real* b, size_t stride, uint count, uint width,
                                    realv* packed) {
-  const uint whole = count / 4 * 4;
-  for (uint h = 0; h < 2 && h * VW < width; ++h, b += VW * stride) {
-    const uint last = width - 1 - h * VW;
-    realv* to = packed + h;
-    for (uint p = 0; p < whole; p += 4, b += 4, to += 8) {
-      const realv r0 = GATHER(0), r1 = GATHER(1), r2 = GATHER(2), r3 = GATHER(3);
-      const realv even01 = (realv)(r0.even, r1.even), even23 = (realv)(r2.even, r3.even);
-      const realv odd01 = (realv)(r0.odd, r1.odd), odd23 = (realv)(r2.odd, r3.odd);
-      to[0] = (realv)(even01.even, even23.even);
-      to[2] = (realv)(odd01.even, odd23.even);
-      to[4] = (realv)(even01.odd, even23.odd);
-      to[6] = (realv)(odd01.odd, odd23.odd);
-    }
-    for (uint p = whole; p < count; ++p, ++b, to += 2)
-      for (uint j = 0; j < VW; ++j) ((real*)to)[j] = b[min(j, last) * stride];
-    b -= count;
-  }
+  pack_transposed_half(b, stride, count, min(width, (uint)VW), packed);
+  if (width > VW) pack_transposed_half(b + VW * stride, stride, count, width - VW, packed + 1);
 }
 
 // sums[2 * DIRECT] += a row of A times DIRECT panels of B stored [p][j], read where they are: for few rows,
@@ -467,5 +467,92 @@ kernel void gemm_turn(global const real* x, uint x_first, uint x_row, uint rows,
   for (uint c = 0; c < wide; ++c) {
     for (uint r = 0; r < high; ++r) line[r] = square[r * VW + c];
     store_some(vload(0, line), out + out_first + (j + c) * out_row + i, rows - i);
+  }
+}
+
+// The weights [4k, in] of an LSTM layer for gemm_lstm_cell: panel 2u holds, for each p, gates i and f of
+// units u * VW .., panel 2u + 1 gates g and o. Items: panels, pieces of BLOCK values of p.
+__attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_pack_gates(global const real* w, uint w_first,
+                                                                           uint in, uint k, global real* out,
+                                                                           uint out_first) {
+  realv packed[BLOCK * 2];
+  const uint unit = get_group_id(0) / 2 * VW, gate = get_group_id(0) % 2 * 2, p = get_group_id(1) * BLOCK;
+  const uint width = min((uint)VW, k - unit), count = min((uint)BLOCK, in - p);
+  for (uint h = 0; h < 2; ++h)
+    pack_transposed_half(w + w_first + ((size_t)(gate + h) * k + unit) * in + p, in, count, width,
+                         packed + h);
+  global real* to = out + out_first + ((size_t)get_group_id(0) * in + p) * COLUMNS;
+  for (uint i = 0; i < 2 * count; ++i) WRITE(to + i * VW, packed[i]);
+}
+
+#define GATES_ZERO(r) realv i##r = 0, f##r = 0, g##r = 0, o##r = 0;
+#define GATES_FMA(r)                       \
+  {                                        \
+    const realv value = a[r * row_stride]; \
+    i##r = fma(value, w0, i##r);           \
+    f##r = fma(value, w1, f##r);           \
+    g##r = fma(value, w2, g##r);           \
+    o##r = fma(value, w3, o##r);           \
+  }
+#define GATES_STORE(r) z[4 * r] = i##r, z[4 * r + 1] = f##r, z[4 * r + 2] = g##r, z[4 * r + 3] = o##r;
+// z[R][4] = rows of A times the two panels of VW units.
+#define DEFINE_MULTIPLY_GATES(R)                                                                    \
+  static inline void multiply_gates_##R(global const real* a, size_t row_stride, uint count,        \
+                                        global const real* w, size_t panel, realv* z) {             \
+    ROWS_##R(GATES_ZERO) for (uint p = 0; p < count; ++p, ++a, w += COLUMNS) {                      \
+      const realv w0 = READ(w), w1 = READ(w + VW), w2 = READ(w + panel), w3 = READ(w + panel + VW); \
+      ROWS_##R(GATES_FMA)                                                                           \
+    }                                                                                               \
+    ROWS_##R(GATES_STORE)                                                                           \
+  }
+#if VW * REAL_BYTES == 64
+#define MOST_GATE_ROWS 6
+DEFINE_MULTIPLY_GATES(6)
+#else
+#define MOST_GATE_ROWS 2
+#endif
+DEFINE_MULTIPLY_GATES(2)
+DEFINE_MULTIPLY_GATES(1)
+
+// One step of an LSTM layer, product and cell: gates = A [batch, in] W^T + x, PyTorch's order i, f, g, o;
+// then c, h as rollout_cell computes them. x_row is 0 where every row sees the same (a bias). Activated gates
+// are written where `keep` is set. Groups: x over VW units, y over rows.
+__attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_lstm_cell(
+    global const real* a, uint a_first, uint a_row, uint in, global const real* w, uint w_first,
+    global const real* x, uint x_first, uint x_row, global const real* c_before, uint c_before_first,
+    global real* h, uint h_first, uint h_row, global real* c, uint c_first, global real* gates,
+    uint gates_first, uint keep, uint batch, uint k, uint rows_per_group) {
+  realv z[MOST_GATE_ROWS * 4];
+  const uint unit = get_group_id(0) * VW, left = k - unit;
+  const uint row_begin = get_group_id(1) * rows_per_group, row_end = min(batch, row_begin + rows_per_group);
+  const size_t panel = (size_t)in * COLUMNS;
+  global const real* panels = w + w_first + get_group_id(0) * 2 * panel;
+  a += a_first;
+  for (uint r = row_begin, rows; r < row_end; r += rows) {
+    const uint rest = row_end - r;
+    rows = rest >= MOST_GATE_ROWS ? MOST_GATE_ROWS : rest >= 2 ? 2 : 1;
+    global const real* from = a + (size_t)r * a_row;
+#if MOST_GATE_ROWS == 6
+    if (rows == 6) multiply_gates_6(from, a_row, in, panels, panel, z);
+#endif
+    if (rows == 2) multiply_gates_2(from, a_row, in, panels, panel, z);
+    if (rows == 1) multiply_gates_1(from, a_row, in, panels, panel, z);
+    for (uint e = 0; e < rows; ++e) {
+      const uint at = (r + e) * k + unit;
+      global const real* extra = x + x_first + (size_t)(r + e) * x_row + unit;
+      const realv i = sigmoid_v(z[4 * e] + load_some(extra, left));
+      const realv f = sigmoid_v(z[4 * e + 1] + load_some(extra + k, left));
+      const realv g = tanh(z[4 * e + 2] + load_some(extra + 2 * k, left));
+      const realv o = sigmoid_v(z[4 * e + 3] + load_some(extra + 3 * k, left));
+      const realv state = f * load_some(c_before + c_before_first + at, left) + i * g;
+      store_some(state, c + c_first + at, left);
+      store_some(o * tanh(state), h + h_first + (size_t)(r + e) * h_row + unit, left);
+      if (!keep) continue;
+      global real* row = gates + gates_first + (size_t)(r + e) * 4 * k + unit;
+      store_some(i, row, left);
+      store_some(f, row + k, left);
+      store_some(g, row + 2 * k, left);
+      store_some(o, row + 3 * k, left);
+    }
   }
 }

@@ -2,8 +2,6 @@
 // [batch, k]. A sample whose sentence is over (step >= length) keeps its state; length may be absent (all
 // samples are as long).
 
-inline realv sigmoid_v(realv v) { return 1 / (1 + exp(-v)); }
-
 /// In: gates before activation, c of the step before. Out: gates after activation (in place), h and c of this
 /// step.
 kernel void lstm_cell(global real* gates, uint gates0, global const real* c_before, uint c_before0,

@@ -65,6 +65,8 @@ typedef realv realv_anywhere __attribute__((aligned(4)));
 #define STORE_VECTOR(v, p) vstore(v, 0, p)
 #endif
 
+inline realv sigmoid_v(realv v) { return 1 / (1 + exp(-v)); }
+
 inline realv load_some(global const real* p, uint left) {
   return left >= VW ? LOAD_VECTOR(p) : load_part(p, left);
 }

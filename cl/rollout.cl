@@ -2,8 +2,6 @@
 // (PyTorch's: gates i, f, g, o). Hidden states stand in rows beside other numbers, so they have a stride;
 // gates [batch, 4k] and cell states [batch, k] have none.
 
-inline realv sigmoid_v(realv v) { return 1 / (1 + exp(-v)); }
-
 /// In: gates before activation, c of the step before. Out: gates after activation (in place), h and c of this
 /// step.
 kernel void rollout_cell(global real* gates, uint gates0, global const real* c_before, uint c_before0,

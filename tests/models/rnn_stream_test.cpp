@@ -113,6 +113,18 @@ TEST_CASE("steps allocate nothing on the device, however many") {
   CHECK(context().statistics().reads == warm.reads + 500);
 }
 
+TEST_CASE("a stream that was emptied begins anew") {
+  Recorder r;
+  r.stream.add({a, b, c});
+  r.step(7);
+  r.stream.clear();
+  CHECK(r.stream.size() == 0);
+  CHECK(r.stream.step().empty());
+  const StreamId id = r.stream.add({b})[0];
+  r.step(9);
+  CHECK(r.motions[id] == at_once(b, 9));
+}
+
 TEST_CASE("an empty stream, ids that are gone and priors of another size") {
   RnnStream stream(model());
   CHECK(stream.step(3).empty());

@@ -27,6 +27,9 @@ inline GemmEngine gemm_engine_wish() {
   return wish;
 }
 
+/// Values of p that the native kernels pack at once: BLOCK of cl/gemm.cl.
+inline std::size_t gemm_block(const Context& context) { return context.device().is_cpu() ? 768 : 32; }
+
 inline GemmEngine choose_engine(const Context& context, GemmEngine engine) {
   if (engine == GemmEngine::automatic) engine = gemm_engine_wish();
   if (engine == GemmEngine::automatic)
@@ -46,7 +49,7 @@ inline Tensor pack_b(const Context& context, const GemmCall& call,
   detail::check_matrix(call, "B", call.b, call.b_offset[0], call.b_transposed ? call.n : call.k,
                        call.b_transposed ? call.k : call.n, call.b_ld, 0);
   const std::size_t columns = 2 * context.vector_width(), panels = (call.n + columns - 1) / columns;
-  const std::size_t block = context.device().is_cpu() ? 768 : 32;  // BLOCK of cl/gemm.cl
+  const std::size_t block = detail::gemm_block(context);
   Tensor packed(context, {panels, call.k, columns});
   context.launch("gemm", "gemm_pack", Grid::groups(panels, (call.k + block - 1) / block),
                  detail::At{call.b, call.b_offset[0]}, call.b_transposed ? std::size_t{1} : call.b_ld,

@@ -28,6 +28,7 @@ class RnnStream {
       : generator_(generator), context_(generator.decode().weight.context()) {
     const NoGrad values_only;
     folded_ = generator.fold();
+    layers_ = detail::RolloutLayers(context_, folded_.rollout);
     k_ = generator.options().hidden;
     dof_ = generator.options().dof;
   }
@@ -89,6 +90,14 @@ class RnnStream {
     ids_.pop_back();
     keys_.resize(4 * last);
     changed();
+  }
+
+  /// Takes all motions out.
+  void clear() {
+    row_of_.clear();
+    ids_.clear();
+    keys_.clear();
+    ready_ = 0;
   }
 
   /// Another text from the frame after next on: one frame is always made ahead.
@@ -230,18 +239,11 @@ class RnnStream {
     noise_.bias = generator_.plot().noise.bias.value();
     plot_ = product(hidden_, k_, folded_.plot.value(), 4 * k_, k_, plots_, 4 * k_);
     plot_.bias = folded_.plot_bias.value();
-    first_ = product(rows_, width(), w.layer0.value(), 4 * k_, dof_ + k_, gates_, 4 * k_);
-    first_.residual = plots_, first_.residual_ld = 4 * k_;
-    second_ = product(rows_, width(), w.layer1.value(), 4 * k_, 2 * k_, gates_, 4 * k_);
-    second_.bias = w.bias1.value();
     move_ = product(rows_, width(), w.diff.value(), dof_, k_, rows_, width());
     move_.bias = w.diff_bias.value();
     move_.residual = rows_, move_.residual_ld = width();
-    for (auto [call, panels] : {std::pair{&noise_, &panels_[0]},
-                                {&plot_, &panels_[1]},
-                                {&first_, &panels_[2]},
-                                {&second_, &panels_[3]},
-                                {&move_, &panels_[4]}}) {
+    for (auto [call, panels] :
+         {std::pair{&noise_, &panels_[0]}, {&plot_, &panels_[1]}, {&move_, &panels_[2]}}) {
       if (panels->empty()) *panels = pack_b(context_, *call);
       call->b_panels = *panels;
     }
@@ -273,20 +275,29 @@ class RnnStream {
   void advance() {
     if (ready_ == 0) make_plots();
     const std::size_t batch = size(), now = half_ * slab(), next = (1 - half_) * slab();
-    const Grid cells = Grid::items(batch * detail::vectors(context_, k_));
-    const auto cell = [&](std::size_t h, const Tensor& c) {
-      context_.launch("rollout", "rollout_cell", cells, gates_, c, detail::At{rows_, h}, width(), c, batch,
-                      k_);
-    };
-    first_.m = second_.m = move_.m = batch;
-    first_.a_offset[0] = now;
-    first_.residual_offset = (ahead_ - ready_) * batch * 4 * k_;
-    gemm(context_, first_);
-    cell(next + dof_, c0_);
-    second_.a_offset[0] = next + dof_;
-    gemm(context_, second_);
-    cell(now + dof_ + k_, c1_);
-    move_.a_offset[0] = now + dof_ + k_;
+    const detail::At next_h1{rows_, now + dof_ + k_};  // stands with the state of the step after
+    layers_.first.step({.batch = batch,
+                        .rows = {rows_, now},
+                        .width = width(),
+                        .extra = {plots_, (ahead_ - ready_) * batch * 4 * k_},
+                        .extra_is_bias = false,
+                        .c_before = {c0_, 0},
+                        .h = {rows_, next + dof_},
+                        .c = {c0_, 0},
+                        .gates = {gates_, 0},
+                        .keep_gates = false});
+    layers_.second.step({.batch = batch,
+                         .rows = {rows_, next + dof_},
+                         .width = width(),
+                         .extra = {folded_.rollout.bias1.value(), 0},
+                         .extra_is_bias = true,
+                         .c_before = {c1_, 0},
+                         .h = next_h1,
+                         .c = {c1_, 0},
+                         .gates = {gates_, 0},
+                         .keep_gates = false});
+    move_.m = batch;
+    move_.a_offset[0] = next_h1.first;
     move_.residual_offset = now;
     move_.c_offset = next;
     gemm(context_, move_);
@@ -298,6 +309,7 @@ class RnnStream {
   RnnGenerator generator_;
   Context context_;
   RnnGenerator::Folded folded_;
+  detail::RolloutLayers layers_;
   std::size_t k_ = 0, dof_ = 0, capacity_ = 0, ahead_ = 1, ready_ = 0, half_ = 0;
   std::uint64_t tick_ = 0;  // frames that the stream has made; a motion's own frame is tick + keys[3]
   StreamId next_id_ = 0;
@@ -308,8 +320,8 @@ class RnnStream {
   Tensor rows_;             // two halves [capacity, dof + 2k], as a rollout's rows of two steps
   Tensor c0_, c1_, h_txt_;  // [capacity, k]
   Tensor z_, hidden_, plots_, gates_, made_;
-  GemmCall noise_, plot_, first_, second_, move_;
-  std::array<Tensor, 5> panels_;  // their weights, packed
+  GemmCall noise_, plot_, move_;
+  std::array<Tensor, 3> panels_;  // their weights, packed
   std::vector<float> host_;
   std::vector<double> host_double_;
 };

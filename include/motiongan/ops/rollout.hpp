@@ -10,6 +10,7 @@
 #pragma once
 #include "motiongan/ops/composed.hpp"
 #include "motiongan/ops/matmul.hpp"
+#include "motiongan/ops/rollout_layer.hpp"
 
 namespace motiongan {
 
@@ -45,6 +46,14 @@ struct RolloutTrace {
   Tensor rows, gates0, gates1, c0, c1;
 };
 
+/// The weights of the two layers, ready for many steps.
+struct RolloutLayers {
+  RolloutLayer first, second;
+  RolloutLayers() = default;
+  RolloutLayers(const Context& context, const RolloutWeights& w)
+      : first(context, w.layer0.value()), second(context, w.layer1.value()) {}
+};
+
 inline RolloutTrace rollout_forward(const Tensor& given, const Tensor& x_gates, const RolloutWeights& w) {
   const Context& context = given.context();
   const std::size_t k = w.diff.dim(1), batch = given.dim(1), frames = x_gates.dim(0) + 1;
@@ -62,34 +71,33 @@ inline RolloutTrace rollout_forward(const Tensor& given, const Tensor& x_gates, 
   clear(trace.c0.view(0, {batch * k}));
   clear(trace.c1.view(0, {batch * k}));
   copy_runs(given, 0, s.dof, trace.rows, 0, s.width(), s.given * batch, s.dof);
-  GemmCall first{.m = batch, .n = 4 * k, .k = s.dof + k}, second{.m = batch, .n = 4 * k, .k = 2 * k},
-      move{.m = batch, .n = s.dof, .k = k};
-  for (GemmCall* call : {&first, &second, &move}) {
-    call->a = trace.rows;
-    call->a_ld = s.width();
-    call->b_transposed = true;
-  }
-  first.b = w.layer0.value(), first.b_ld = s.dof + k, first.c = trace.gates0, first.c_ld = 4 * k;
-  first.residual = x_gates, first.residual_ld = 4 * k;
-  second.b = w.layer1.value(), second.b_ld = 2 * k, second.c = trace.gates1, second.c_ld = 4 * k;
-  second.bias = w.bias1.value();
-  move.b = w.diff.value(), move.b_ld = k, move.c = move.residual = trace.rows;
-  move.c_ld = move.residual_ld = s.width(), move.bias = w.diff_bias.value();
-  // The weights are read in every step: in the order of the engine.
-  for (GemmCall* call : {&first, &second, &move}) call->b_panels = pack_b(context, *call);
+  const RolloutLayers layers(context, w);
+  GemmCall move{.m = batch, .n = s.dof, .k = k, .a = trace.rows, .b = w.diff.value(), .c = trace.rows};
+  move.a_ld = move.c_ld = move.residual_ld = s.width(), move.b_ld = k;
+  move.b_transposed = true;
+  move.bias = w.diff_bias.value(), move.residual = trace.rows;
+  move.b_panels = pack_b(context, move);
   for (std::size_t t = 1; t < frames; ++t) {
-    first.a_offset[0] = s.pose_at(t - 1);
-    first.c_offset = first.residual_offset = s.gates_at(t);
-    gemm(context, first);
-    context.launch("rollout", "rollout_cell", s.cells(context), At{trace.gates0, s.gates_at(t)},
-                   At{trace.c0, s.state_at(t - 1)}, At{trace.rows, s.h0_at(t)}, s.width(),
-                   At{trace.c0, s.state_at(t)}, batch, k);
-    second.a_offset[0] = s.h0_at(t);
-    second.c_offset = s.gates_at(t);
-    gemm(context, second);
-    context.launch("rollout", "rollout_cell", s.cells(context), At{trace.gates1, s.gates_at(t)},
-                   At{trace.c1, s.state_at(t - 1)}, At{trace.rows, s.h1_at(t)}, s.width(),
-                   At{trace.c1, s.state_at(t)}, batch, k);
+    layers.first.step({.batch = batch,
+                       .rows = {trace.rows, s.pose_at(t - 1)},
+                       .width = s.width(),
+                       .extra = {x_gates, s.gates_at(t)},
+                       .extra_is_bias = false,
+                       .c_before = {trace.c0, s.state_at(t - 1)},
+                       .h = {trace.rows, s.h0_at(t)},
+                       .c = {trace.c0, s.state_at(t)},
+                       .gates = {trace.gates0, s.gates_at(t)},
+                       .keep_gates = true});
+    layers.second.step({.batch = batch,
+                        .rows = {trace.rows, s.h0_at(t)},
+                        .width = s.width(),
+                        .extra = {w.bias1.value(), 0},
+                        .extra_is_bias = true,
+                        .c_before = {trace.c1, s.state_at(t - 1)},
+                        .h = {trace.rows, s.h1_at(t)},
+                        .c = {trace.c1, s.state_at(t)},
+                        .gates = {trace.gates1, s.gates_at(t)},
+                        .keep_gates = true});
     if (t < s.given) continue;
     move.a_offset[0] = s.h1_at(t);
     move.c_offset = s.pose_at(t);

@@ -1,0 +1,65 @@
+// One step of an LSTM layer whose weights are used again and again: product and cell, in one kernel on the
+// native engine of gemm().
+#pragma once
+#include "motiongan/core/gemm.hpp"
+#include "motiongan/ops/reduce.hpp"
+
+namespace motiongan::detail {
+
+/// What a step reads and writes; every place is a tensor and the number of its first element.
+struct LayerStep {
+  std::size_t batch;
+  At rows;            ///< what the layer sees, [batch, in] in rows of `width`
+  std::size_t width;  ///< of the rows that are read, and of those that h is written to
+  At extra;           ///< [batch, 4k] or, with extra_is_bias, [4k]
+  bool extra_is_bias;
+  At c_before, h, c;  ///< [batch, k]; h in rows of `width`
+  At gates;           ///< [batch, 4k], activated
+  bool keep_gates;    ///< whether they are wanted; the memory is needed anyhow
+};
+
+/// Gates = rows W^T + extra (PyTorch's order i, f, g, o), then c and h. W [4k, in] is read when this is made.
+class RolloutLayer {
+ public:
+  RolloutLayer() = default;
+  RolloutLayer(const Context& context, const Tensor& weight)
+      : weight_(weight), k_(weight.dim(0) / 4), in_(weight.dim(1)) {
+    if (choose_engine(context, GemmEngine::automatic) != GemmEngine::native) return;
+    const std::size_t panels = 2 * vectors(context, k_), columns = 2 * context.vector_width();
+    packed_ = Tensor(context, {panels, in_, columns});
+    context.launch("gemm", "gemm_pack_gates",
+                   Grid::groups(panels, (in_ + gemm_block(context) - 1) / gemm_block(context)), weight, in_,
+                   k_, packed_);
+  }
+
+  void step(const LayerStep& s) const {
+    const Context& context = weight_.context();
+    const std::size_t extra_row = s.extra_is_bias ? 0 : 4 * k_;
+    if (!packed_.empty()) {
+      const std::size_t units = vectors(context, k_), wanted = 8 * context.device().compute_units;
+      const std::size_t row_groups = std::max<std::size_t>(1, wanted / units), tile = 6;
+      const std::size_t rows = ((s.batch + row_groups - 1) / row_groups + tile - 1) / tile * tile;
+      context.count_gemm_flops(2.0 * static_cast<double>(s.batch * 4 * k_ * in_));
+      context.launch("gemm", "gemm_lstm_cell", Grid::groups(units, (s.batch + rows - 1) / rows), s.rows,
+                     s.width, in_, packed_, s.extra, extra_row, s.c_before, s.h, s.width, s.c, s.gates,
+                     static_cast<cl_uint>(s.keep_gates), s.batch, k_, rows);
+      return;
+    }
+    GemmCall call{.m = s.batch, .n = 4 * k_, .k = in_, .a = s.rows.tensor, .b = weight_, .c = s.gates.tensor};
+    call.a_ld = s.width, call.b_ld = in_, call.c_ld = 4 * k_, call.b_transposed = true;
+    call.a_offset[0] = s.rows.first, call.c_offset = s.gates.first;
+    if (s.extra_is_bias)
+      call.bias = s.extra.tensor;
+    else
+      call.residual = s.extra.tensor, call.residual_offset = s.extra.first, call.residual_ld = 4 * k_;
+    gemm(context, call);
+    context.launch("rollout", "rollout_cell", Grid::items(s.batch * vectors(context, k_)), s.gates,
+                   s.c_before, s.h, s.width, s.c, s.batch, k_);
+  }
+
+ private:
+  Tensor weight_, packed_;
+  std::size_t k_ = 0, in_ = 0;
+};
+
+}  // namespace motiongan::detail
