@@ -1,37 +1,26 @@
 // motiongan generate: new motion for a text.
-#include <fstream>
-#include <set>
-
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/motion/bvh.hpp"
 #include "motiongan/motion/motion.hpp"
-#include "motiongan/train/train.hpp"
+#include "prompt.hpp"
 #include "show.hpp"
+#include "streaming.hpp"
+#include "training.hpp"
 
 namespace motiongan::command {
 namespace {
 
 struct GenerateArgs {
-  std::string model, prompts, out = ".", html, png;
+  std::string model, prompts, out = ".", html, png, drift;
   std::vector<std::string> texts;
   GenerateOptions options;
   double rate = 0;
 };
 
-/// The model file itself, or the one in the folder of a run.
-fs::path model_file(const fs::path& given) {
-  if (!fs::is_directory(given)) return given;
-  const RunFiles files{given};
-  require(fs::exists(files.generator()), given.string(), " holds no ", files.generator().filename().string(),
-          "; give a model file, or the --save folder of a training");
-  return files.generator();
-}
-
 /// The texts of the options, then those of the file, one a line.
 std::vector<std::string> all_texts(const GenerateArgs& args) {
   std::vector<std::string> texts = args.texts;
-  for (const std::string& text : texts)
-    require(!motion::split_words(text).empty(), "--text \"", text, "\" has no words; describe a motion");
+  for (const std::string& text : texts) check_text(text);
   if (!args.prompts.empty()) {
     const std::string all = motion::read_text(args.prompts, "file of prompts");
     std::size_t line = 1;
@@ -52,72 +41,88 @@ std::vector<std::string> all_texts(const GenerateArgs& args) {
   return texts;
 }
 
-/// A file name made of a text: its words joined by dashes, at most about 60 bytes.
-std::string slug(const std::string& text) {
-  std::string out;
-  for (const std::string& word : motion::split_words(text)) {
-    if (!out.empty() && out.size() + word.size() > 60) break;
-    out += (out.empty() ? "" : "-") + word;
+/// Motions of one text, all of them made before the first is written: for generators that make a window at
+/// once. Returns what there is to show.
+std::vector<motion::Motion> write_whole(const Dvgan& model, const std::string& text, const GenerateArgs& args,
+                                        const std::vector<fs::path>& files, DriftReport* drift) {
+  std::vector<motion::Motion> motions;
+  for (const std::vector<float>& poses : model.generate_poses(text, args.options)) {
+    if (drift != nullptr) {
+      DriftMeter meter(model.format());
+      meter.add(poses, poses.size() / model.format().dof());
+      drift->add(meter);
+    }
+    motions.push_back(model.format().to_motion(poses));
+    const motion::Motion& made = motions.back();
+    motion::write_bvh(files[motions.size() - 1], args.rate > 0 ? motion::resample(made, args.rate) : made);
   }
-  if (out.size() > 60) {  // one long word: cut it between two characters
-    out.resize(60);
-    while (!motion::is_utf8(out)) out.pop_back();
-  }
-  return out;
+  return motions;
 }
 
-void warn_of_unknown_words(const motion::Vocabulary& vocabulary, const std::string& text) {
-  const std::vector<std::string> words = vocabulary.unknown_words(text);
-  if (words.empty()) return;
-  std::string list;
-  for (const std::string& word : words) list += (list.empty() ? "\"" : ", \"") + word + "\"";
-  fmt::print(stderr, "motiongan: \"{}\": the model never saw {}{}\n", text, list,
-             words.size() == motion::split_words(text).size() ? "; it knows none of these words"
-                                                              : "; taken as unknown");
+/// The same frame by frame, of any length.
+std::optional<std::vector<motion::Motion>> write_long(const Dvgan& model, const std::string& text,
+                                                      const GenerateArgs& args, std::size_t frames,
+                                                      const std::vector<fs::path>& files,
+                                                      DriftReport* drift) {
+  StreamJob job{.files = files, .frames = frames, .rate = args.rate};
+  for (std::size_t i = 0; i < files.size(); ++i)
+    job.characters.push_back({.text = text,
+                              .seed = args.options.seed,
+                              .sample = static_cast<std::uint32_t>(args.options.first_sample + i)});
+  if (!args.html.empty() || !args.png.empty()) job.kept = shown_frames(model.format().rate, args.rate);
+  return write_streamed(model, job, drift);
 }
 
 int generate(const GenerateArgs& args) {
   const std::vector<std::string> texts = all_texts(args);
-  require(args.options.first_sample + args.options.count <= 0xFFFFFFFFu, "--first-sample ",
-          args.options.first_sample, " and --count ", args.options.count, " go past sample 4294967295");
+  check_samples(args.options.first_sample, args.options.count);
   const fs::path file = model_file(args.model);
   const Context context;
   const Dvgan model = Dvgan::load(context, file);
+  const motion::MotionFormat& format = model.format();
+  const std::size_t made = args.options.frames > 0 ? args.options.frames : format.frames;
+  if (made != format.frames) model.rnn();  // refuses where there is none
+  const double rate = args.rate > 0 ? args.rate : format.rate;
+  const std::size_t frames = motion::resampled_frames(made, format.rate, rate);
+  // A window that is cut out of a longer motion cannot come frame by frame.
+  const bool streamed = model.is_recurrent() && !(model.options().cuts() && made == format.frames);
   const fs::path out = args.out;
   make_folder(out);
 
+  DriftReport drift;
+  DriftReport* const measured = !args.drift.empty() || made > 4 * format.frames ? &drift : nullptr;
+  if (streamed) catch_signals();
   std::vector<view::ViewedMotion> shown;
   std::set<std::string> names;
-  std::size_t frames = 0;
-  double rate = 0;
+  std::size_t files_made = 0;
   for (const std::string& text : texts) {
-    warn_of_unknown_words(model.format().vocabulary, text);
+    warn_of_unknown_words(format.vocabulary, text);
     std::string name = slug(text);
     for (std::size_t again = 2; !names.insert(name).second; ++again)
       name = fmt::format("{}-{}", slug(text), again);
-    std::vector<motion::Motion> motions = model.generate(text, args.options);
-    for (std::size_t i = 0; i < motions.size(); ++i) {
-      if (args.rate > 0) motions[i] = motion::resample(motions[i], args.rate);
-      frames = motions[i].frames;
-      rate = motions[i].rate;
-      const std::size_t sample = args.options.first_sample + i;
-      motion::write_bvh(out / fmt::format("{}_{:03}.bvh", name, sample), motions[i]);
-      if (!args.html.empty() || !args.png.empty())
-        shown.push_back(
-            {args.options.count > 1 ? fmt::format("{} ({})", text, sample) : text, std::move(motions[i])});
-    }
-    const std::size_t last = args.options.first_sample + args.options.count - 1;
-    fmt::print(
-        "\"{}\": {}\n", text,
-        args.options.count == 1
-            ? (out / fmt::format("{}_{:03}.bvh", name, last)).string()
-            : fmt::format("{} to {}",
-                          (out / fmt::format("{}_{:03}.bvh", name, args.options.first_sample)).string(),
-                          fmt::format("{}_{:03}.bvh", name, last)));
+    const std::vector<fs::path> files =
+        sample_files(out, name, args.options.first_sample, args.options.count);
+    const auto motions = streamed ? write_long(model, text, args, made, files, measured)
+                                  : write_whole(model, text, args, files, measured);
+    if (!motions) return stopped(files_made);
+    files_made += files.size();
+    fmt::print("\"{}\": {}\n", text, named(files));
+    if (args.html.empty() && args.png.empty()) continue;
+    for (std::size_t i = 0; i < motions->size(); ++i)
+      shown.push_back(
+          {args.options.count > 1 ? fmt::format("{} ({})", text, args.options.first_sample + i) : text,
+           for_page((*motions)[i], args.rate)});
   }
-  fmt::print("wrote {} of {} at {} per second ({} each), seed {}\n",
-             counted(texts.size() * args.options.count, "BVH file"), counted(frames, "frame"), brief(rate),
-             duration(static_cast<double>(frames) / rate), args.options.seed);
+  fmt::print("wrote {} of {} at {} per second ({} each), seed {}\n", counted(files_made, "BVH file"),
+             counted(frames, "frame"), brief(rate), duration(static_cast<double>(frames) / rate),
+             args.options.seed);
+  if (measured != nullptr) drift.print();
+  if (!args.drift.empty()) {
+    drift.write_csv(args.drift);
+    fmt::print("wrote {}: the drift of each second\n", args.drift);
+  }
+  if (!shown.empty() && shown.front().motion.frames < frames)
+    fmt::print("only the first {} frames of each motion are shown below\n", most_shown);
   if (!args.html.empty()) show_page(args.html, shown, "generated by " + file.string());
   if (!args.png.empty()) show_strip(args.png, shown);
   return 0;
@@ -131,7 +136,9 @@ void add_generate(CLI::App& app, Job& job) {
       "Make new motion for a text and write it as BVH.\n"
       "Files are called by the text and the number of the sample (walk-slowly_000.bvh); those that are there "
       "are\n"
-      "replaced. The same model, text, seed and sample give the same motion, whatever --count is.");
+      "replaced. The same model, text, seed and sample give the same motion, whatever --count is. A model "
+      "with\n"
+      "an RNN generator makes any number of frames; they are written as they are made.");
   const auto args = std::make_shared<GenerateArgs>();
   verb->add_option("MODEL", args->model, "model file, or the --save folder of a training")
       ->required()
@@ -150,6 +157,14 @@ void add_generate(CLI::App& app, Job& job) {
   verb->add_option("--first-sample", args->options.first_sample, "number of the first motion of the seed")
       ->check(not_negative())
       ->capture_default_str();
+  verb->add_option("--frames", args->options.frames,
+                   "frames of each motion, at the model's rate; other numbers need an RNN generator [the "
+                   "model's]")
+      ->check(positive())
+      ->type_name("N");
+  verb->add_option("--drift", args->drift,
+                   "table to write: how far poses are from those of the training, second by second")
+      ->type_name("FILE.csv");
   verb->add_option("--rate", args->rate, "frames per second of the files, by interpolation [the model's]")
       ->check(CLI::Range(1e-3, 1e4))
       ->type_name("HZ");

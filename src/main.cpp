@@ -42,6 +42,7 @@ int run(int argc, char** argv) {
   add_devices(app, job);
   add_train(app, job);
   add_generate(app, job);
+  add_complete(app, job);
   add_info(app, job);
   add_view(app, job);
   add_compare(app, job);

@@ -67,3 +67,5 @@ inline void write_file(const fs::path& file, const std::string& text) {
 /// A training so small that an iteration takes a moment; the same wherever it is used, so that PoCL compiles
 /// its kernels once.
 inline const std::string tiny = " --frames 16 --hidden 16 --batch 4 --critic-steps 2 --split-seed 3 ";
+inline const std::string tiny_rnn =
+    " --generator rnn --frames 8 --rate 4 --hidden 8 --batch 4 --critic-steps 1 --split-seed 3 ";

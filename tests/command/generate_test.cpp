@@ -1,10 +1,34 @@
 // New motion through the command, and looking at it.
 #include <doctest/doctest.h>
 
+#include <sys/resource.h>
+
+#include <algorithm>
+
 #include "command.hpp"
+#include "motiongan/models/dvgan.hpp"
 #include "motiongan/motion/bvh.hpp"
 
 using namespace motiongan::motion;
+
+namespace {
+
+/// The most memory that a run of the command had at a time, in KiB.
+long peak_memory(const std::string& arguments) {
+  const std::string line = std::string("exec '") + MOTIONGAN_COMMAND + "' " + arguments + " >/dev/null 2>&1";
+  const pid_t child = fork();
+  if (child == 0) {
+    execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
+    _exit(127);
+  }
+  int status = -1;
+  rusage used{};
+  CHECK(wait4(child, &status, 0, &used) == child);
+  CHECK(status == 0);
+  return used.ru_maxrss;
+}
+
+}  // namespace
 
 TEST_CASE("generate, view, info and compare, from a model of three iterations") {
   const TestFolder folder;
@@ -103,5 +127,57 @@ TEST_CASE("generate, view, info and compare, from a model of three iterations") 
     const Said same = call("compare --generated clips --real clips");
     CHECK(same.has("median spread ratio                   1.000"));
     CHECK(call("compare --generated made clips --real clips").has("choose one with --rate"));
+  }
+}
+
+TEST_CASE("an RNN model makes any number of frames") {
+  const TestFolder folder;
+  REQUIRE(call("train dvgan --procedural 6 --save run --iterations 2" + tiny_rnn).status == 0);
+
+  SUBCASE("the files are those of the library; a table tells of drift") {
+    const Said said = call("generate run --text walk --count 2 --frames 3000 --out a --drift d/drift.csv");
+    CHECK_MESSAGE(said.status == 0, said.text);
+    CHECK(said.has("wrote 2 BVH files of 3000 frames at 4 per second (12 min 30 s each)"));
+    CHECK(said.has("drift of 2 motions"));
+    CHECK(said.has("675 to 749"));
+    const std::string table = bytes_of("d/drift.csv");
+    CHECK(std::count(table.begin(), table.end(), '\n') == 751);
+    const motiongan::Context context;
+    const auto model = motiongan::Dvgan::load(context, "run/generator.safetensors");
+    const auto motions = model.generate("walk", {.count = 2, .frames = 3000});
+    write_bvh("b.bvh", motions[1]);
+    CHECK(bytes_of("a/walk_001.bvh") == bytes_of("b.bvh"));
+    REQUIRE(call("generate run --text walk --frames 3000 --rate 10 --out c").status == 0);
+    write_bvh("c.bvh", resample(motions[0], 10));
+    CHECK(bytes_of("c/walk_000.bvh") == bytes_of("c.bvh"));
+    CHECK_FALSE(call("generate run --text walk").has("drift"));  // a window of 8 frames
+  }
+  SUBCASE("memory does not grow with the length") {
+    const long some = peak_memory("generate run --text walk --frames 1000");
+    CHECK(some > 1000);
+    CHECK(peak_memory("generate run --text walk --frames 16000") < some + 4096);  // as a motion: 20 MB
+    CHECK(read_bvh("walk_000.bvh").frames == 16000);
+  }
+  SUBCASE("a page shows the first frames") {
+    const Said said = call("generate run --text walk --frames 1000 --rate 20 --html long.html");
+    CHECK(said.has("of 4996 frames at 20 per second"));
+    CHECK(said.has("only the first 3000 frames of each motion are shown"));
+    CHECK(bytes_of("long.html").find("\"frames\":3000") != std::string::npos);
+  }
+  SUBCASE("Ctrl-C leaves no file that is not whole") {
+    const Said said = shell(std::string("'") + MOTIONGAN_COMMAND +
+                            "' generate run --text walk --frames 100000000 --out s & pid=$!; for i in $(seq "
+                            "600); do [ $(cat s/walk_000.bvh.tmp 2>/dev/null | wc -c) -gt 100000 ] && break; "
+                            "sleep 0.05; done; kill -INT $pid; wait $pid");
+    CHECK_MESSAGE(said.status == 130, said.text);
+    CHECK(said.has("stopped; 0 files are complete"));
+    CHECK(fs::is_empty("s"));
+  }
+  SUBCASE("a CNN model makes a window") {
+    REQUIRE(call("train dvgan --procedural 6 --save cnn --iterations 1" + tiny).status == 0);
+    CHECK(call("generate cnn --text walk --frames 16 --drift cnn.csv").has("wrote cnn.csv"));
+    const Said said = call("generate cnn --text walk --frames 17");
+    CHECK(said.status == 1);
+    CHECK_MESSAGE(said.has("--generator rnn"), said.text);
   }
 }

@@ -1,0 +1,72 @@
+// What generate and complete are given: a model and texts.
+#pragma once
+#include <set>
+
+#include "command.hpp"
+#include "motiongan/motion/text_file.hpp"
+#include "motiongan/motion/vocabulary.hpp"
+#include "motiongan/train/train.hpp"
+
+namespace motiongan::command {
+
+/// The model file itself, or the one in the folder of a run.
+inline fs::path model_file(const fs::path& given) {
+  if (!fs::is_directory(given)) return given;
+  const RunFiles files{given};
+  require(fs::exists(files.generator()), given.string(), " holds no ", files.generator().filename().string(),
+          "; give a model file, or the --save folder of a training");
+  return files.generator();
+}
+
+/// Error unless the text of --text can be one.
+inline void check_text(const std::string& text) {
+  require(!motion::split_words(text).empty(), "--text \"", text, "\" has no words; describe a motion");
+  require(motion::is_utf8(text), "the text \"", text, "\" is not UTF-8");
+}
+
+/// A file name made of a text: its words joined by dashes, at most about 60 bytes.
+inline std::string slug(const std::string& text) {
+  std::string out;
+  for (const std::string& word : motion::split_words(text)) {
+    if (!out.empty() && out.size() + word.size() > 60) break;
+    out += (out.empty() ? "" : "-") + word;
+  }
+  if (out.size() > 60) {  // one long word: cut it between two characters
+    out.resize(60);
+    while (!motion::is_utf8(out)) out.pop_back();
+  }
+  return out;
+}
+
+inline void warn_of_unknown_words(const motion::Vocabulary& vocabulary, const std::string& text) {
+  const std::vector<std::string> words = vocabulary.unknown_words(text);
+  if (words.empty()) return;
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "\"" : ", \"") + word + "\"";
+  fmt::print(stderr, "motiongan: \"{}\": the model never saw {}{}\n", text, list,
+             words.size() == motion::split_words(text).size() ? "; it knows none of these words"
+                                                              : "; taken as unknown");
+}
+
+/// The files of samples `first` to `first` + `count` - 1 of a name.
+inline std::vector<fs::path> sample_files(const fs::path& folder, const std::string& name, std::size_t first,
+                                          std::size_t count) {
+  std::vector<fs::path> files;
+  for (std::size_t i = 0; i < count; ++i)
+    files.push_back(folder / fmt::format("{}_{:03}.bvh", name, first + i));
+  return files;
+}
+
+/// "new/walk_000.bvh", or "new/walk_000.bvh to walk_003.bvh".
+inline std::string named(const std::vector<fs::path>& files) {
+  const std::string first = files.front().string();
+  return files.size() == 1 ? first : fmt::format("{} to {}", first, files.back().filename().string());
+}
+
+/// Samples are numbered by 32 bits.
+inline void check_samples(std::size_t first, std::size_t count) {
+  require(first <= 0xFFFFFFFFu && count <= 0xFFFFFFFFu - first, "--first-sample ", first, " and --count ",
+          count, " go past sample 4294967295");
+}
+
+}  // namespace motiongan::command
