@@ -46,6 +46,14 @@ TEST_CASE("a figure has a node for every point that stands apart, and end sites 
   CHECK(figure.height == doctest::Approx(1.3 * (std::hypot(10, 5) + 80 + 15)));
 }
 
+TEST_CASE("what begins with the same seed is seen from the same side") {
+  view::ViewedMotion turning = test::walker(20);                            // faces +x
+  for (std::size_t f = 5; f < 20; ++f) turning.motion.rotation(f, 1) = {};  // then +z
+  CHECK(view::make_figure(turning).heading < 1);
+  turning.seed_frames = 5;
+  CHECK(view::make_figure(turning).heading == doctest::Approx(std::acos(0.0)));
+}
+
 TEST_CASE("what cannot be drawn is refused by name") {
   auto none = test::walker(1, 30, "empty one");
   none.motion.frames = 0;

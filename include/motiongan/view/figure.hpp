@@ -95,8 +95,9 @@ inline double standing_height(const motion::Skeleton& skeleton, std::size_t firs
   return longest > 0 ? 1.3 * longest : 1;
 }
 
-/// Mean direction of the figure over the clip, from its first left and right points that lie apart.
-inline double mean_heading(const Figure& figure) {
+/// Mean direction of the figure over its first `frames` frames, from its first left and right points that lie
+/// apart.
+inline double mean_heading(const Figure& figure, std::size_t frames) {
   std::size_t left = 0, right = 0;
   for (std::size_t n = figure.nodes(); n-- > 1;) {
     if (figure.sides[n] == Side::left) left = n;
@@ -104,7 +105,7 @@ inline double mean_heading(const Figure& figure) {
   }
   if (left == 0 || right == 0) return 0;
   double sine = 0, cosine = 0, first = 0;
-  for (std::size_t f = 0; f < figure.frames; ++f) {
+  for (std::size_t f = 0; f < frames; ++f) {
     const motion::Vec3 across = motion::subtract(figure.point(f, left), figure.point(f, right));
     const double angle = std::atan2(-across[2], across[0]);  // forward = across x up
     if (f == 0) first = angle;
@@ -112,7 +113,7 @@ inline double mean_heading(const Figure& figure) {
     cosine += std::cos(angle);
   }
   // Who turns round and round has no mean direction: take the first.
-  const bool turns = std::hypot(sine, cosine) < 0.3 * static_cast<double>(figure.frames);
+  const bool turns = std::hypot(sine, cosine) < 0.3 * static_cast<double>(frames);
   return turns ? first : std::atan2(sine, cosine);
 }
 
@@ -187,7 +188,9 @@ inline Figure make_figure(const ViewedMotion& viewed) {
     }
   }
   out.floor = detail::ground(out);
-  out.heading = detail::mean_heading(out);
+  // Motions that begin with the same seed are seen from the same side, whatever they do next.
+  const bool seeded = viewed.seed_frames > 0;
+  out.heading = detail::mean_heading(out, seeded ? std::min(viewed.seed_frames, out.frames) : out.frames);
   return out;
 }
 
