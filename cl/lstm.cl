@@ -1,19 +1,19 @@
-// One step of an LSTM layer (PyTorch's: gates i, f, g, o), pointwise part. Gates are [batch, 4k], states
-// [batch, k]. A sample whose sentence is over (step >= length) keeps its state; length may be absent (all
-// samples are as long).
+// One step of an LSTM layer (PyTorch's: gates i, f, g, o), pointwise part. Gates are [batch, 4k], cell states
+// [batch, k]; hidden states may stand in longer rows, h_row numbers apart. A sample whose sentence is over
+// (step >= length) keeps its state; length may be absent (all samples are as long).
 
 /// In: gates before activation, c of the step before. Out: gates after activation (in place), h and c of this
 /// step.
 kernel void lstm_cell(global real* gates, uint gates0, global const real* c_before, uint c_before0,
                       global const real* h_before, uint h_before0, global const int* length, uint step,
-                      global real* h, uint h0, global real* c, uint c0, uint batch, uint k) {
+                      global real* h, uint h0, uint h_row, global real* c, uint c0, uint batch, uint k) {
   const uint columns = (k + VW - 1) / VW, item = get_global_id(0);
   const uint b = item / columns, j = item % columns * VW;
   if (b >= batch) return;
   const uint left = k - j, at = b * k + j;
   global real* row = gates + gates0 + b * 4 * k + j;
   if (length && step >= (uint)length[b]) {
-    store_some(load_some(h_before + h_before0 + at, left), h + h0 + at, left);
+    store_some(load_some(h_before + h_before0 + b * h_row + j, left), h + h0 + b * h_row + j, left);
     store_some(load_some(c_before + c_before0 + at, left), c + c0 + at, left);
     return;
   }
@@ -25,28 +25,31 @@ kernel void lstm_cell(global real* gates, uint gates0, global const real* c_befo
   store_some(g, row + 2 * k, left);
   store_some(o, row + 3 * k, left);
   store_some(state, c + c0 + at, left);
-  store_some(o * tanh(state), h + h0 + at, left);
+  store_some(o * tanh(state), h + h0 + b * h_row + j, left);
 }
 
 /// In: activated gates, c of this step and the one before, gradients of h and c of this step from outside
-/// (dh, dc) and, unless this is the `last` step, from the step after (dh_carry, dc_carry). Out: gradient of
-/// the gates before activation; dc_carry for the step before; where asked, the whole gradients of h and of c
-/// (h_total, c_total). The product of the gate gradients with the recurrent weights makes dh_carry for the
-/// step before; with `length` it is added to what this kernel leaves there, which passes beside the gates:
-/// zero, or all of it for a sample that is over.
+/// (dh, in rows of dh_row; dc may be absent) and, unless this is the `last` step, from the step after
+/// (dh_carry, dc_carry; dh_carry is absent where dh holds all). Out: gradient of the gates before activation;
+/// dc_carry for the step before; where asked, the whole gradients of h and of c (h_total, c_total). The
+/// product of the gate gradients with the recurrent weights makes dh_carry for the step before; with `length`
+/// it is added to what this kernel leaves there, which passes beside the gates: zero, or all of it for a
+/// sample that is over.
 kernel void lstm_cell_backward(global const real* gates, uint gates0, global const real* c, uint c0,
                                global const real* c_before, uint c_before0, global const real* dh, uint dh0,
-                               global const real* dc, uint dc0, global const int* length, uint step,
-                               uint last, global real* dh_carry, uint dh_carry0, global real* dc_carry,
-                               uint dc_carry0, global real* dgates, uint dgates0, global real* h_total,
-                               uint h_total0, global real* c_total, uint c_total0, uint batch, uint k) {
+                               uint dh_row, global const real* dc, uint dc0, global const int* length,
+                               uint step, uint last, global real* dh_carry, uint dh_carry0,
+                               global real* dc_carry, uint dc_carry0, global real* dgates, uint dgates0,
+                               global real* h_total, uint h_total0, global real* c_total, uint c_total0,
+                               uint batch, uint k) {
   const uint columns = (k + VW - 1) / VW, item = get_global_id(0);
   const uint b = item / columns, j = item % columns * VW;
   if (b >= batch) return;
   const uint left = k - j, at = b * k + j;
-  realv gh = load_some(dh + dh0 + at, left), gc = load_some(dc + dc0 + at, left);
+  realv gh = load_some(dh + dh0 + b * dh_row + j, left), gc = 0;
+  if (dc) gc = load_some(dc + dc0 + at, left);
   if (!last) {
-    gh += load_some(dh_carry + dh_carry0 + at, left);
+    if (dh_carry) gh += load_some(dh_carry + dh_carry0 + at, left);
     gc += load_some(dc_carry + dc_carry0 + at, left);
   }
   global const real* row = gates + gates0 + b * 4 * k + j;
@@ -152,19 +155,4 @@ kernel void lstm_slope_backward(global const real* gates, uint gates0, global co
   store_some(of_g * (1 - g * g), adjoint + 2 * k, left);
   store_some(of_o * o * (1 - o), adjoint + 3 * k, left);
   store_some(of_c * f, c_carry, left);
-}
-
-/// out[j, i] = x[i, j] for x [rows, columns]. A work-item turns a square of VW x VW, so that both sides are
-/// read and written by vectors.
-kernel void turn(global const real* x, uint x0, global real* out, uint out0, uint rows, uint columns) {
-  const uint across = (columns + VW - 1) / VW, item = get_global_id(0);
-  const uint i = item / across * VW, j = item % across * VW;
-  if (i >= rows) return;
-  real square[VW * VW], line[VW];
-  const uint high = min(rows - i, (uint)VW), wide = min(columns - j, (uint)VW);
-  for (uint r = 0; r < high; ++r) vstore(load_some(x + x0 + (i + r) * columns + j, columns - j), r, square);
-  for (uint c = 0; c < wide; ++c) {
-    for (uint r = 0; r < high; ++r) line[r] = square[r * VW + c];
-    store_some(vload(0, line), out + out0 + (j + c) * rows + i, rows - i);
-  }
 }

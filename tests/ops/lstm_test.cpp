@@ -148,20 +148,29 @@ TEST_CASE("first derivatives with lengths equal the composed form's") {
   for (std::size_t i = 0; i < v.size(); ++i) check_equal(of_a[i], of_b[i], 1e-12);
 }
 
-TEST_CASE("a matrix turned, and gates by turned weights") {
-  for (const Shape& shape : {Shape{1, 1}, Shape{3, 5}, Shape{17, 8}, Shape{8, 33}}) {
-    const Input x = randn(shape);
-    const std::vector<double> out = turned(constant(x)).value().to_host<double>();
-    for (std::size_t i = 0; i < shape[0]; ++i)
-      for (std::size_t j = 0; j < shape[1]; ++j) CHECK(out[j * shape[0] + i] == x.values[i * shape[1] + j]);
+TEST_CASE("h alone: the layer without its cells, to the third derivative") {
+  for (std::size_t frames : {1, 4}) {
+    CAPTURE(frames);
+    const std::size_t k = 3;
+    const auto in = layer_inputs(frames, k);
+    const Var zero = zeros(double_context(), {batch, k});
+    const Function alone = [](auto& v) { return lstm_hidden(v[0], v[1]); };
+    const Function taken = [&](auto& v) { return hidden_states(lstm_layer(v[0], v[1], zero, zero)); };
+    CHECK(check_grads(double_context(), alone, {in[0], in[1]}, 3) < 1e-7);
+    const auto slope = [&](const Function& f) -> Function {
+      return [&f](const std::vector<Var>& v) {
+        return grad({f({v[0], v[1]})}, {v[2]}, {v[0]}, {.create_graph = true})[0];
+      };
+    };
+    const std::vector<Input> at{in[0], in[1], randn({frames, batch, k})};
+    CHECK(check_grads(double_context(), slope(alone), at, 3) < 1e-7);
+    std::vector<Var> v;
+    for (const Input& input : at) v.push_back(Var::leaf(on_device(input)));
+    const Var a = slope(alone)(v), b = slope(taken)(v);
+    check_equal(a, b, 0);
+    const Var u = constant(randn(a.shape()));
+    const auto of_a = grad({a}, {u}, v), of_b = grad({b}, {u}, v);
+    for (std::size_t i = 0; i < v.size(); ++i)
+      if (frames > 1 || i != 1) check_equal(of_a[i], of_b[i], 0);
   }
-  const Function squared = [](auto& v) { return square(turned(v[0])); };
-  CHECK(check_grads(double_context(), squared, {randn({3, 5})}, 3) < 1e-7);
-  const std::vector<Input> at{randn({4, 2, 3}), randn({8, 3}), randn({8})};
-  const Function gates = [](auto& v) { return square(lstm_gates(v[0], turned(v[1]), v[2])); };
-  CHECK(check_grads(double_context(), gates, at, 2) < 1e-7);
-  const Var x = constant(at[0]), w = constant(at[1]), bias = constant(at[2]);
-  const Var plain =
-      reshape(matmul(reshape(x, {8, 3}), w, false, true), {4, 2, 8}) + expand(bias, 1, 8, 8, 1, {4, 2, 8});
-  check_equal(lstm_gates(x, turned(w), bias), plain, 1e-15);
 }

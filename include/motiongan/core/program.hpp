@@ -23,7 +23,6 @@ inline const char* kernel_file(std::string_view name) {
   if (name == "gemm") return kernels::gemm;
   if (name == "softmax") return kernels::softmax;
   if (name == "lstm") return kernels::lstm;
-  if (name == "rollout") return kernels::rollout;
   if (name == "random") return kernels::random;
   if (name == "adam") return kernels::adam;
   throw Error("there is no kernel file cl/", name, ".cl");

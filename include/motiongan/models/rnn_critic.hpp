@@ -78,19 +78,19 @@ class RnnCritic {
 
   /// The upper LSTM layer's h over the differences: [N-1, B, M] -> [N-1, B, k].
   Var hidden(const Var& differences) const {
-    const Var zero = zeros(differences.context(), {differences.dim(1), options_.hidden});
+    const std::size_t k = options_.hidden;
     Var h;
     for (const Lstm::Layer& layer : lstm_.layers) {
-      const Var w = turned(layer.weight_ih), bias = layer.bias_ih + layer.bias_hh;  // [k, 4k], [4k]
-      Var gates;
-      if (h.empty()) {
-        const std::size_t k = options_.hidden;
-        const Var of_bias = matmul(reshape(diff_.bias, {1, k}), w);
-        gates = lstm_gates(differences, matmul(diff_.weight, w, true), reshape(of_bias, {4 * k}) + bias);
-      } else {
-        gates = lstm_gates(h, w, bias);
-      }
-      h = hidden_states(lstm_layer(gates, layer.weight_hh, zero, zero));
+      const bool lowest = h.empty();
+      // `diff` and the lowest layer's input weights are both linear: one product does for both.
+      const Var weight = lowest ? matmul(layer.weight_ih, diff_.weight) : layer.weight_ih;
+      Var bias = layer.bias_ih + layer.bias_hh;
+      if (lowest)
+        bias = bias + reshape(matmul(reshape(diff_.bias, {1, k}), layer.weight_ih, false, true), {4 * k});
+      const Var& x = lowest ? differences : h;
+      h = lstm_hidden(
+          taps(x, reshape(weight, {1, 4 * k, weight.dim(1)}), {0}, x.dim(0), false, {.bias = bias}),
+          layer.weight_hh);
     }
     return h;
   }

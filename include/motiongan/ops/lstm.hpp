@@ -1,12 +1,18 @@
 // One LSTM layer over time: fused for values, first derivatives and the second derivative that a gradient
 // penalty takes; composed of elementary operations for all other and higher ones.
 #pragma once
-#include "motiongan/autograd/grad.hpp"
+#include "motiongan/ops/composed.hpp"
 #include "motiongan/ops/lstm_sweeps.hpp"
 #include "motiongan/ops/matmul.hpp"
 #include "motiongan/ops/taps.hpp"
 
 namespace motiongan {
+
+/// h of every step, [T, B, k], out of lstm_layer's states.
+inline Var hidden_states(const Var& states) {
+  const std::size_t frames = states.dim(1), batch = states.dim(2), k = states.dim(3);
+  return slice(reshape(states, {2 * frames, batch, k}), 0, 0, frames);
+}
 
 namespace detail {
 
@@ -45,93 +51,78 @@ inline Var lstm_layer_composed(const Var& x_gates, const Var& w_hh, const Var& h
   return concat_axis({concat_axis(all_h, 1), concat_axis(all_c, 1)}, 0);
 }
 
-/// Partial derivatives of `f` by those inputs that are needed, themselves differentiable. Copies of the
-/// inputs are younger than what they copy, so the sweep stops at them.
-template <class F>
-std::vector<Var> partial_derivatives(const std::vector<Var>& inputs, const Var& g, const Needs& needs,
-                                     const F& f) {
-  std::vector<Var> copies, wanted;
-  for (const Var& input : inputs) copies.push_back(reshape(input, input.shape()));
-  for (std::size_t i = 0; i < copies.size(); ++i)
-    if (needs[i]) wanted.push_back(copies[i]);
-  const std::vector<Var> found = grad({f(copies)}, {g}, wanted, {.create_graph = true});
-  std::vector<Var> result(inputs.size());
-  for (std::size_t i = 0, j = 0; i < result.size(); ++i)
-    if (needs[i]) result[i] = found[j++];
-  return result;
-}
-
 /// The gradient of lstm_layer by its gates, [T, B, 4k], as an operation of its own: this is what a gradient
 /// penalty differentiates once more. First states are constant, every sample runs to T. Its own first
 /// derivative is fused, higher ones are composed.
-inline Var lstm_layer_slope(const Var& g, const Var& x_gates, const Var& w_hh, const LstmPass& pass) {
+inline Var lstm_layer_slope(const Var& g, const Var& x_gates, const Var& w_hh, const LstmPass& pass,
+                            bool only_h) {
   const LstmGradients first = lstm_backward(pass, g.value(), {.keep_totals = true});
   return record(
       "lstm_layer_slope", {g, x_gates, w_hh}, first.gates,
-      [pass, totals = first.totals](const Node& self, const Var& u, const Needs& needs) -> std::vector<Var> {
+      [pass, only_h, totals = first.totals](const Node& self, const Var& u,
+                                            const Needs& needs) -> std::vector<Var> {
         if (recording())
           return partial_derivatives(self.inputs, u, needs, [&](const std::vector<Var>& v) {
             const Var states =
                 lstm_layer_composed(v[1], v[2], Var::constant(pass.h_first), Var::constant(pass.c_first), {});
-            return grad({states}, {v[0]}, {v[1]}, {.create_graph = true})[0];
+            return grad({only_h ? hidden_states(states) : states}, {v[0]}, {v[1]}, {.create_graph = true})[0];
           });
         const LstmSlopeGradients found =
             lstm_slope_gradients(pass, self.value, totals, u.value(), needs[1], needs[2]);
-        return {Var::constant(found.g), needs[1] ? Var::constant(found.gates) : Var(),
-                needs[2] ? Var::constant(found.w_hh) : Var()};
+        return {
+            Var::constant(only_h ? found.g.view(0, {pass.frames(), pass.batch(), pass.hidden()}) : found.g),
+            needs[1] ? Var::constant(found.gates) : Var(), needs[2] ? Var::constant(found.w_hh) : Var()};
       });
 }
 
+/// lstm_layer, or h alone of its states.
+inline Var lstm_layer_fused(const Var& x_gates, const Var& w_hh, const Var& h_first, const Var& c_first,
+                            const Indices& lengths, bool only_h) {
+  const std::size_t batch = x_gates.dim(1), k = w_hh.dim(1), slab = batch * k;
+  require(x_gates.dim(2) == 4 * k && w_hh.dim(0) == 4 * k && h_first.size() == slab && c_first.size() == slab,
+          "lstm_layer: gates ", x_gates.shape(), ", weights ", w_hh.shape(), ", first state ",
+          h_first.shape());
+  const LstmPass pass =
+      lstm_forward(x_gates.value(), w_hh.value(), h_first.value(), c_first.value(), lengths);
+  return record("lstm_layer", {x_gates, w_hh, h_first, c_first},
+                only_h ? pass.states.view(0, {x_gates.dim(0), batch, k}) : pass.states,
+                [pass, only_h](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
+                  const auto& in = self.inputs;
+                  if (!recording()) {
+                    const LstmGradients found = lstm_backward(pass, g.value(), {.h_first = needs[2]});
+                    return {Var::constant(found.gates),
+                            needs[1]
+                                ? Var::constant(weight_gradient(pass, found.gates, pass.states, pass.h_first))
+                                : Var(),
+                            needs[2] ? Var::constant(found.h_first) : Var(),
+                            needs[3] ? Var::constant(found.c_first) : Var()};
+                  }
+                  // A higher derivative is asked. By the gates alone (a gradient penalty) it is fused.
+                  if (needs == Needs{true, false, false, false} && pass.lengths.empty() &&
+                      !in[2].requires_grad() && !in[3].requires_grad())
+                    return {lstm_layer_slope(g, in[0], in[1], pass, only_h), {}, {}, {}};
+                  return partial_derivatives(in, g, needs, [&](const std::vector<Var>& v) {
+                    const Var states = lstm_layer_composed(v[0], v[1], v[2], v[3], pass.lengths);
+                    return only_h ? hidden_states(states) : states;
+                  });
+                });
+}
+
 }  // namespace detail
-
-/// A matrix turned: [rows, columns] -> [columns, rows].
-inline Var turned(const Var& x) {
-  return record("turned", {x}, detail::turned_value(x.value()),
-                [](const Node&, const Var& g, const Needs&) -> std::vector<Var> { return {turned(g)}; });
-}
-
-/// What an input does to the gates of every step, x W_ih^T + bias: x [T, B, in], `turned_w_ih` [in, 4k] the
-/// input weights turned, bias [4k] -> [T, B, 4k]. With the weights turned their gradient is a product that
-/// reads gates by rows.
-inline Var lstm_gates(const Var& x, const Var& turned_w_ih, const Var& bias) {
-  const Var w = reshape(turned_w_ih, {1, turned_w_ih.dim(0), turned_w_ih.dim(1)});
-  return taps(x, w, {0}, x.dim(0), true, {.bias = bias});
-}
 
 /// One LSTM layer as PyTorch's (gates i, f, g, o). `x_gates` [T, B, 4k] is W_ih x + b_ih + b_hh, `w_hh` [4k,
 /// k], `h_first`, `c_first` [B, k]. A sample keeps its state from step lengths[b] on (`lengths` may be empty:
 /// all run to T). Returns all states, [2, T, B, k]: h of every step, then c of every step.
 inline Var lstm_layer(const Var& x_gates, const Var& w_hh, const Var& h_first, const Var& c_first,
                       const Indices& lengths = {}) {
-  const std::size_t batch = x_gates.dim(1), k = w_hh.dim(1), slab = batch * k;
-  require(x_gates.dim(2) == 4 * k && w_hh.dim(0) == 4 * k && h_first.size() == slab && c_first.size() == slab,
-          "lstm_layer: gates ", x_gates.shape(), ", weights ", w_hh.shape(), ", first state ",
-          h_first.shape());
-  const detail::LstmPass pass =
-      detail::lstm_forward(x_gates.value(), w_hh.value(), h_first.value(), c_first.value(), lengths);
-  return record(
-      "lstm_layer", {x_gates, w_hh, h_first, c_first}, pass.states,
-      [pass](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
-        const auto& in = self.inputs;
-        if (!detail::recording()) {
-          const detail::LstmGradients found = detail::lstm_backward(pass, g.value(), {.h_first = needs[2]});
-          Var by_weights;
-          if (needs[1]) {
-            const Tensor turned(g.context(), {pass.hidden(), 4 * pass.hidden()});
-            detail::weight_gradient(pass, found.gates, pass.states, pass.h_first, turned, false);
-            by_weights = Var::constant(detail::turned_value(turned));
-          }
-          return {Var::constant(found.gates), by_weights, needs[2] ? Var::constant(found.h_first) : Var(),
-                  needs[3] ? Var::constant(found.c_first) : Var()};
-        }
-        // A higher derivative is asked. By the gates alone (a gradient penalty) it is fused.
-        if (needs == Needs{true, false, false, false} && pass.lengths.empty() && !in[2].requires_grad() &&
-            !in[3].requires_grad())
-          return {detail::lstm_layer_slope(g, in[0], in[1], pass), {}, {}, {}};
-        return detail::partial_derivatives(in, g, needs, [&](const std::vector<Var>& v) {
-          return detail::lstm_layer_composed(v[0], v[1], v[2], v[3], pass.lengths);
-        });
-      });
+  return detail::lstm_layer_fused(x_gates, w_hh, h_first, c_first, lengths, false);
+}
+
+/// h of every step, [T, B, k], of a layer that starts from zeros: what hidden_states() takes out of
+/// lstm_layer's result, without carrying c and its gradient along.
+inline Var lstm_hidden(const Var& x_gates, const Var& w_hh) {
+  const Var zero = zeros(x_gates.context(), {x_gates.dim(1), w_hh.dim(1)});
+  return detail::lstm_layer_fused(x_gates, w_hh, zero, zero, {}, true);
 }
 
 /// The last h or c of every sample, [B, k], out of lstm_layer's states; kind 0 is h, 1 is c.
@@ -139,12 +130,6 @@ inline Var last_state(const Var& states, std::size_t kind) {
   const std::size_t frames = states.dim(1), batch = states.dim(2), k = states.dim(3);
   return reshape(slice(reshape(states, {2 * frames, batch, k}), 0, kind * frames + frames - 1, 1),
                  {batch, k});
-}
-
-/// h of every step, [T, B, k].
-inline Var hidden_states(const Var& states) {
-  const std::size_t frames = states.dim(1), batch = states.dim(2), k = states.dim(3);
-  return slice(reshape(states, {2 * frames, batch, k}), 0, 0, frames);
 }
 
 }  // namespace motiongan

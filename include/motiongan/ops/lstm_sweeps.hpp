@@ -2,7 +2,7 @@
 // gradient. Each step is one matrix product and one pointwise kernel of cl/lstm.cl. lstm.hpp makes
 // differentiable operations of them.
 #pragma once
-#include "motiongan/core/gemm.hpp"
+#include "motiongan/ops/lstm_step.hpp"
 #include "motiongan/ops/reduce.hpp"
 
 namespace motiongan::detail {
@@ -90,40 +90,24 @@ inline void run_step(const LstmPass& pass, GemmCall& recurrence_gradient, const 
   gemm(pass.context(), recurrence_gradient);
 }
 
-/// A matrix turned: [rows, columns] -> [columns, rows].
-inline Tensor turned_value(const Tensor& x) {
-  const std::size_t rows = x.dim(0), columns = x.dim(1);
-  const Context& context = x.context();
-  Tensor out(context, {columns, rows});
-  context.launch("lstm", "turn", Grid::items(vectors(context, rows) * vectors(context, columns)), x, out,
-                 rows, columns);
-  return out;
-}
-
-/// w [k, 4k] = or += sum over t of h[t-1]^T rows[t], all steps in one product; the first step's, with
-/// `first`, apart (absent: left out). rows is [T, B, 4k], h [T, B, k] or more. This is the gradient of the
-/// weights turned: the other way round the product would read the long rows of gates by columns, 4k numbers
-/// apart, at a third of the speed.
-inline void weight_gradient(const LstmPass& pass, const Tensor& rows, const Tensor& h, const Tensor& first,
-                            const Tensor& w, bool accumulate) {
-  GemmCall call;
-  call.m = call.a_ld = pass.hidden();
-  call.n = call.b_ld = call.c_ld = 4 * pass.hidden();
-  call.b = rows;
+/// sum over t of rows[t]^T h[t-1], [4k, k], all steps in one product; the first step's, with `first`, is
+/// added (absent: left out). rows is [T, B, 4k], h [T, B, k] or more. The gradient of the recurrent weights.
+inline Tensor weight_gradient(const LstmPass& pass, const Tensor& rows, const Tensor& h,
+                              const Tensor& first) {
+  const std::size_t k = pass.hidden();
+  GemmCall call{.m = 4 * k, .n = k, .k = (pass.frames() - 1) * pass.batch(), .a = rows, .b = h};
+  call.c = Tensor(pass.context(), {4 * k, k});
+  call.a_ld = 4 * k, call.b_ld = call.c_ld = k;
   call.a_transposed = true;
-  call.c = w;
-  call.accumulate = accumulate;
-  if (!first.empty()) {
-    call.k = pass.batch();
-    call.a = first;
-    gemm(pass.context(), call);
-    call.accumulate = true;
-  }
-  if (pass.frames() == 1) return;
-  call.k = (pass.frames() - 1) * pass.batch();
-  call.b_offset[0] = 4 * pass.slab();
-  call.a = h;
+  call.a_offset[0] = call.k > 0 ? 4 * pass.slab() : 0;
   gemm(pass.context(), call);
+  if (first.empty()) return call.c;
+  call.k = pass.batch();
+  call.a_offset[0] = 0;
+  call.b = first;
+  call.accumulate = true;
+  gemm(pass.context(), call);
+  return call.c;
 }
 
 /// Runs the layer over x_gates [T, B, 4k].
@@ -137,12 +121,27 @@ inline LstmPass lstm_forward(const Tensor& x_gates, const Tensor& w_hh, const Te
                 .lengths = lengths,
                 .gates = Tensor(context, {frames, batch, 4 * k}),
                 .states = Tensor(context, {2, frames, batch, k})};
+  if (lengths.empty()) {
+    const LstmStepper layer(context, w_hh);
+    for (std::size_t t = 0; t < frames; ++t)
+      layer.step({.batch = batch,
+                  .rows = {t > 0 ? pass.states : h_first, t > 0 ? (t - 1) * pass.slab() : 0},
+                  .width = k,
+                  .extra = {x_gates, t * 4 * pass.slab()},
+                  .extra_is_bias = false,
+                  .c_before = {t > 0 ? pass.states : c_first, t > 0 ? (frames + t - 1) * pass.slab() : 0},
+                  .h = {pass.states, t * pass.slab()},
+                  .c = {pass.states, (frames + t) * pass.slab()},
+                  .gates = {pass.gates, t * 4 * pass.slab()},
+                  .keep_gates = true});
+    return pass;
+  }
   GemmCall product = recurrence(pass, x_gates, pass.gates);
   for (std::size_t t = 0; t < frames; ++t) {
     const Tensor h_before = pass.h_before(t);
     run_step(pass, product, h_before, t);
     context.launch("lstm", "lstm_cell", pass.grid(), pass.gates_at(pass.gates, t), pass.c_before(t), h_before,
-                   Maybe<Indices>{lengths}, t, pass.state_at(pass.states, t), pass.c_at(t), batch, k);
+                   lengths, t, pass.state_at(pass.states, t), k, pass.c_at(t), batch, k);
   }
   return pass;
 }
@@ -157,7 +156,7 @@ struct LstmBackward {
   bool h_first = false, keep_totals = false;
 };
 
-/// Gradients of <g, states>, g [2, T, B, k].
+/// Gradients of <g, states>; g is [2, T, B, k], or [T, B, k] where c has no gradient from outside.
 inline LstmGradients lstm_backward(const LstmPass& pass, const Tensor& g, const LstmBackward& options) {
   const Context& context = pass.context();
   const std::size_t frames = pass.frames(), batch = pass.batch(), k = pass.hidden();
@@ -165,15 +164,17 @@ inline LstmGradients lstm_backward(const LstmPass& pass, const Tensor& g, const 
                     .h_first = Tensor(context, {batch, k}),
                     .c_first = Tensor(context, {batch, k}),
                     .totals = options.keep_totals ? Tensor(context, {2, frames, batch, k}) : Tensor()};
+  const bool of_c = g.size() == 2 * frames * pass.slab();
   GemmCall product = recurrence_gradient(pass, out.h_first, !pass.lengths.empty());
   for (std::size_t t = frames; t-- > 0;) {
     const Tensor now = pass.gates_at(out.gates, t);
     const Tensor h_total = options.keep_totals ? pass.state_at(out.totals, t) : Tensor(),
                  c_total = options.keep_totals ? pass.state_at(out.totals, t, 1) : Tensor();
     context.launch("lstm", "lstm_cell_backward", pass.grid(), pass.gates_at(pass.gates, t), pass.c_at(t),
-                   pass.c_before(t), pass.state_at(g, t), pass.state_at(g, t, 1),
-                   Maybe<Indices>{pass.lengths}, t, std::size_t{t + 1 == frames}, out.h_first, out.c_first,
-                   now, Maybe<Tensor>{h_total}, Maybe<Tensor>{c_total}, batch, k);
+                   pass.c_before(t), pass.state_at(g, t), k,
+                   Maybe<Tensor>{of_c ? pass.state_at(g, t, 1) : Tensor()}, Maybe<Indices>{pass.lengths}, t,
+                   std::size_t{t + 1 == frames}, out.h_first, out.c_first, now, Maybe<Tensor>{h_total},
+                   Maybe<Tensor>{c_total}, batch, k);
     if (t > 0 || options.h_first) run_step(pass, product, now);
   }
   return out;
@@ -218,10 +219,9 @@ inline LstmSlopeGradients lstm_slope_gradients(const LstmPass& pass, const Tenso
   }
   out.gates = gates;
   if (of_w_hh) {
-    const Tensor turned(context, {k, 4 * k});
-    weight_gradient(pass, gates, pass.states, pass.h_first, turned, false);
-    weight_gradient(pass, slope, out.g, {}, turned, true);
-    out.w_hh = turned_value(turned);
+    const Var of_activations = Var::constant(weight_gradient(pass, gates, pass.states, pass.h_first)),
+              of_slope = Var::constant(weight_gradient(pass, slope, out.g, {}));
+    out.w_hh = (of_activations + of_slope).value();
   }
   return out;
 }

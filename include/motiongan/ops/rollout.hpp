@@ -9,8 +9,8 @@
 // row and each takes one matrix product.
 #pragma once
 #include "motiongan/ops/composed.hpp"
+#include "motiongan/ops/lstm_step.hpp"
 #include "motiongan/ops/matmul.hpp"
-#include "motiongan/ops/rollout_layer.hpp"
 
 namespace motiongan {
 
@@ -48,7 +48,7 @@ struct RolloutTrace {
 
 /// The weights of the two layers, ready for many steps.
 struct RolloutLayers {
-  RolloutLayer first, second;
+  LstmStepper first, second;
   RolloutLayers() = default;
   RolloutLayers(const Context& context, const RolloutWeights& w)
       : first(context, w.layer0.value()), second(context, w.layer1.value()) {}
@@ -129,23 +129,27 @@ inline std::vector<Var> rollout_backward(const RolloutTrace& trace, const Node& 
   second.a = gates1, second.a_ld = 4 * k, second.b = self.inputs[3].value(), second.b_ld = 2 * k;
   first.a = gates0, first.a_ld = 4 * k, first.b = self.inputs[2].value(), first.b_ld = s.dof + k;
   for (GemmCall* call : {&move, &second, &first}) call->b_panels = pack_b(context, *call);
+  const cl_mem none = nullptr;
+  const auto cell = [&](const Tensor& activated, const Tensor& c, std::size_t h, const Tensor& dc,
+                        const Tensor& gradient, std::size_t t) {
+    context.launch("lstm", "lstm_cell_backward", s.cells(context), At{activated, s.gates_at(t)},
+                   At{c, s.state_at(t)}, At{c, s.state_at(t - 1)}, At{rows, h}, s.width(), none,
+                   std::size_t{0}, none, t, std::size_t{0}, none, std::size_t{0}, dc,
+                   At{gradient, s.gates_at(t)}, none, std::size_t{0}, none, std::size_t{0}, batch, k);
+  };
   for (std::size_t t = frames; t-- > 1;) {
     if (t >= s.given) {
       move.a_offset[0] = s.pose_at(t);
       move.c_offset = s.h1_at(t);
       gemm(context, move);
-      context.launch("rollout", "add_rows", Grid::items(batch * vectors(context, s.dof)),
+      context.launch("layout", "add_rows", Grid::items(batch * vectors(context, s.dof)),
                      At{rows, s.pose_at(t)}, s.width(), At{rows, s.pose_at(t - 1)}, s.width(), batch, s.dof);
     }
-    context.launch("rollout", "rollout_cell_backward", s.cells(context), At{trace.gates1, s.gates_at(t)},
-                   At{trace.c1, s.state_at(t)}, At{trace.c1, s.state_at(t - 1)}, At{rows, s.h1_at(t)},
-                   s.width(), dc1, At{gates1, s.gates_at(t)}, batch, k);
+    cell(trace.gates1, trace.c1, s.h1_at(t), dc1, gates1, t);
     second.a_offset[0] = s.gates_at(t);
     second.c_offset = s.h0_at(t);
     gemm(context, second);
-    context.launch("rollout", "rollout_cell_backward", s.cells(context), At{trace.gates0, s.gates_at(t)},
-                   At{trace.c0, s.state_at(t)}, At{trace.c0, s.state_at(t - 1)}, At{rows, s.h0_at(t)},
-                   s.width(), dc0, At{gates0, s.gates_at(t)}, batch, k);
+    cell(trace.gates0, trace.c0, s.h0_at(t), dc0, gates0, t);
     first.a_offset[0] = s.gates_at(t);
     first.c_offset = s.pose_at(t - 1);
     gemm(context, first);
@@ -227,7 +231,7 @@ inline Var rollout(const Var& given, const Var& x_gates, const RolloutWeights& w
                 std::move(motion),
                 [trace](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
                   if (!detail::recording()) return detail::rollout_backward(trace, self, g.value(), needs);
-                  return detail::derivative_of_composed(self, g, needs, [](const std::vector<Var>& in) {
+                  return detail::partial_derivatives(self.inputs, g, needs, [](const std::vector<Var>& in) {
                     return detail::rollout_composed(in[0], in[1], {in[2], in[3], in[4], in[5], in[6]});
                   });
                 });

@@ -7,7 +7,7 @@
 namespace motiongan::detail {
 
 /// What a step reads and writes; every place is a tensor and the number of its first element.
-struct LayerStep {
+struct LstmStep {
   std::size_t batch;
   At rows;            ///< what the layer sees, [batch, in] in rows of `width`
   std::size_t width;  ///< of the rows that are read, and of those that h is written to
@@ -18,11 +18,12 @@ struct LayerStep {
   bool keep_gates;    ///< whether they are wanted; the memory is needed anyhow
 };
 
-/// Gates = rows W^T + extra (PyTorch's order i, f, g, o), then c and h. W [4k, in] is read when this is made.
-class RolloutLayer {
+/// One LSTM layer: gates = rows W^T + extra (PyTorch's order i, f, g, o), then c and h. W [4k, in] is read
+/// when this is made.
+class LstmStepper {
  public:
-  RolloutLayer() = default;
-  RolloutLayer(const Context& context, const Tensor& weight)
+  LstmStepper() = default;
+  LstmStepper(const Context& context, const Tensor& weight)
       : weight_(weight), k_(weight.dim(0) / 4), in_(weight.dim(1)) {
     if (choose_engine(context, GemmEngine::automatic) != GemmEngine::native) return;
     const std::size_t panels = 2 * vectors(context, k_), columns = 2 * context.vector_width();
@@ -32,7 +33,7 @@ class RolloutLayer {
                    k_, packed_);
   }
 
-  void step(const LayerStep& s) const {
+  void step(const LstmStep& s) const {
     const Context& context = weight_.context();
     const std::size_t extra_row = s.extra_is_bias ? 0 : 4 * k_;
     if (!packed_.empty()) {
@@ -53,8 +54,8 @@ class RolloutLayer {
     else
       call.residual = s.extra.tensor, call.residual_offset = s.extra.first, call.residual_ld = 4 * k_;
     gemm(context, call);
-    context.launch("rollout", "rollout_cell", Grid::items(s.batch * vectors(context, k_)), s.gates,
-                   s.c_before, s.h, s.width, s.c, s.batch, k_);
+    context.launch("lstm", "lstm_cell", Grid::items(s.batch * vectors(context, k_)), s.gates, s.c_before, s.h,
+                   static_cast<cl_mem>(nullptr), std::size_t{0}, s.h, s.width, s.c, s.batch, k_);
   }
 
  private:
