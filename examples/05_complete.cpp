@@ -25,14 +25,12 @@ int main() {
 
   // What was given, at the model's rate and so that its last frame stays; then what was made.
   const motion::Motion seed = motion::resample_to_end(given, stream.rate());
-  const motion::Motion truth =
-      motion::join(seed, motion::resample(motion::slice(clip, 60, clip.frames - 60), stream.rate()));
+  const motion::Motion truth = motion::resample(clip, stream.rate());
   std::vector<view::ViewedMotion> shown{{"the clip", truth, seed.frames}};
   for (const CharacterId id : ids) {
     shown.push_back({"made", motion::join(seed, stream.motion(id)), seed.frames});
     const motion::Vec3 before = seed.position(seed.frames - 1, 0), after = stream.motion(id).position(0, 0);
-    std::printf("from %.1f %.1f to %.1f %.1f: no jump at the seam\n", before[0], before[2], after[0],
-                after[2]);
+    std::printf("given until %.1f %.1f, goes on at %.1f %.1f\n", before[0], before[2], after[0], after[2]);
   }
   motion::write_bvh("completed.bvh", shown[1].motion);
   view::write_player("completed.html", shown, {.title = "one beginning, three ways to go on"});
