@@ -15,6 +15,7 @@
 #include "motiongan/ops/lstm.hpp"
 #include "motiongan/ops/matmul.hpp"
 #include "motiongan/ops/reduce.hpp"
+#include "motiongan/ops/rollout.hpp"
 #include "motiongan/ops/taps.hpp"
 //
 #include "motiongan/nn/linear.hpp"
@@ -41,7 +42,10 @@
 #include "motiongan/models/cnn_critic.hpp"
 #include "motiongan/models/cnn_generator.hpp"
 #include "motiongan/models/dvgan.hpp"
+#include "motiongan/models/dvgan_critic.hpp"
 #include "motiongan/models/rnn_critic.hpp"
+#include "motiongan/models/rnn_generator.hpp"
+#include "motiongan/models/rnn_stream.hpp"
 //
 #include "motiongan/train/checkpoint.hpp"
 #include "motiongan/train/dvgan_trainer.hpp"

@@ -125,6 +125,49 @@ TEST_CASE("with and without final cut") {
   }
 }
 
+TEST_CASE("the RNN generator: any number of frames, alone as in a batch, and the same after a file") {
+  Dvgan model = made({.generator = Generator::rnn, .hidden = 12});
+  CHECK_FALSE(model.options().cuts());
+  const Poses all = model.generate_poses(caption, {.count = 66, .seed = 5});
+  CHECK(all[65] == model.generate_poses(caption, {.count = 1, .seed = 5, .first_sample = 65})[0]);
+  const Poses longer = model.generate_poses(caption, {.count = 2, .seed = 5, .frames = 150});
+  REQUIRE(longer[1].size() == 150 * model.format().dof());
+  CHECK(std::equal(all[1].begin(), all[1].end(), longer[1].begin()));  // it begins as the short one
+  CHECK(model.generate(caption, {.frames = 1})[0].frames == 1);
+  const auto path = scratch("rnn");
+  model.save(path);
+  Dvgan loaded = Dvgan::load(context(), path);
+  CHECK(loaded.is_recurrent());
+  CHECK(all_values(loaded) == all_values(model));
+  CHECK(loaded.generate_poses(caption, {.count = 2, .seed = 5, .frames = 150}) == longer);
+  std::filesystem::remove(path);
+}
+
+TEST_CASE("the RNN generator with final cut: a piece of what it makes without") {
+  const Dvgan model = made({.generator = Generator::rnn, .hidden = 12, .final_cut = true});
+  const std::size_t dof = model.format().dof(), frames = model.format().frames;
+  const Poses cut = model.generate_poses(caption, {.count = 3, .seed = 2}),
+              whole = model.generate_poses(caption, {.count = 3, .seed = 2, .frames = 2 * frames});
+  const std::vector<cl_int> at = model.rnn().cuts(context(), {.seed = 2}, 3).to_host();
+  for (std::size_t i = 0; i < 3; ++i) {
+    REQUIRE(cut[i].size() == frames * dof);
+    CHECK(std::equal(cut[i].begin(), cut[i].end(), whole[i].begin() + at[i] * static_cast<long>(dof)));
+  }
+  CHECK(made({.generator = Generator::rnn, .hidden = 8, .final_cut = true}).generate(caption)[0].frames ==
+        frames);
+}
+
+TEST_CASE("a CNN generator asked for what only the RNN can says what to use") {
+  const Dvgan model = made();
+  for (const std::string& text :
+       {message_of([&] { model.rnn(); }), message_of([&] { model.generate(caption, {.frames = 20}); })}) {
+    CHECK(says(text, "CNN generator"));
+    CHECK(says(text, "--generator rnn"));
+  }
+  CHECK(model.generate(caption, {.frames = model.format().frames}).size() == 1);
+  CHECK(says(message_of([] { made({.generator = Generator::rnn, .hidden = 8}).cnn(); }), "RNN generator"));
+}
+
 TEST_CASE("sizes that cannot be are refused") {
   motion::MotionFormat format = small_data().format;
   format.frames = 33;

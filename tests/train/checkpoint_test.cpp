@@ -31,8 +31,8 @@ struct Run {
   Dvgan model;
   DvganTrainer trainer;
   explicit Run(const DvganTrainOptions& options = small_options, std::size_t frames = 8,
-               std::size_t hidden = 8)
-      : model(context, small_data(frames).format, {.hidden = hidden}),
+               std::size_t hidden = 8, Generator generator = Generator::cnn)
+      : model(context, small_data(frames).format, {.generator = generator, .hidden = hidden}),
         trainer(model, small_data(frames), options) {}
 
   void iterate(std::size_t until) {
@@ -92,6 +92,36 @@ TEST_CASE("a run that is stopped and resumed equals an unbroken one, wherever it
   Run elsewhere;
   elsewhere.iterate(5);
   CHECK(elsewhere.state() != expected);
+}
+
+TEST_CASE("the recurrent networks resume as well, and not as the others") {
+  const Scratch scratch;
+  const fs::path path = scratch.path / "checkpoint.safetensors";
+  DvganTrainOptions options = small_options;
+  options.critic.critic = Critic::rnn;
+  const auto fresh = [&] { return Run(options, 8, 8, Generator::rnn); };
+  Run unbroken = fresh(), first = fresh(), second = fresh();
+  unbroken.iterate(4);
+  first.iterate(2);
+  save_checkpoint(first.trainer, path);
+  load_checkpoint(second.trainer, path);
+  second.iterate(4);
+  CHECK(second.state() == unbroken.state());
+  Run other_critic(small_options, 8, 8, Generator::rnn), other_generator(options);
+  CHECK(says(message_of([&] { load_checkpoint(other_critic.trainer, path); }), "critic = 1"));
+  CHECK(says(message_of([&] { load_checkpoint(other_generator.trainer, path); }), "another model"));
+}
+
+TEST_CASE("a checkpoint from before an option existed counts as its default") {
+  const auto drop = [](const std::string& key) {
+    return refusal([&](io::SafeTensors& file) {
+      auto options = nlohmann::json::parse(file.metadata.at("training"));
+      REQUIRE(options.erase(key) == 1);
+      file.metadata["training"] = options.dump();
+    });
+  };
+  CHECK(drop("diff_input") == "no error");
+  CHECK(says(drop("batch"), "batch = 64, now 3"));
 }
 
 TEST_CASE("saving changes nothing, and saves the same bytes again") {
