@@ -106,10 +106,10 @@ inline void gemm_native(const Context& context, const GemmCall& wanted) {
   const bool only_product =
       !g.accumulate && g.bias.empty() && g.residual.empty() && !g.relu && !g.b_transposed;
   if (only_product && g.b_ld < g.a_ld) {
-    std::swap(g.a, g.b);
-    std::swap(g.a_ld, g.b_ld);
-    std::swap(g.a_offset[0], g.b_offset[0]);
-    std::swap(g.m, g.n);
+    g.a = wanted.b, g.b = wanted.a;
+    g.a_ld = wanted.b_ld, g.b_ld = wanted.a_ld;
+    g.a_offset[0] = wanted.b_offset[0], g.b_offset[0] = wanted.a_offset[0];
+    g.m = wanted.n, g.n = wanted.m;
     g.c = Tensor(context, {g.m, g.n});
     g.c_offset = 0;
     g.c_ld = g.n;

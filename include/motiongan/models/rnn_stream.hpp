@@ -173,7 +173,7 @@ class RnnStream {
   void continue_from(const Tensor& given, const Var& h_txt, const Var& z, std::size_t row) {
     const std::size_t n = given.dim(0), count = given.dim(1);
     const Var plots = generator_.plot_gates(folded_, h_txt, slice(z, 0, 1, n));
-    const detail::RolloutTrace trace = detail::rollout_forward(given, plots.value(), folded_.rollout);
+    const detail::RolloutTrace trace = detail::rollout_forward(given, plots.value(), folded_.rollout, false);
     const detail::RolloutShape& from = trace.shape;
     const std::size_t now = half_ * slab() + row * width(), next = (1 - half_) * slab() + row * width();
     detail::copy_runs(trace.rows, from.pose_at(n), from.width(), rows_, now, width(), count, dof_ + k_);

@@ -48,9 +48,10 @@ struct LstmPass {
   Tensor h_before(std::size_t t) const { return t > 0 ? state_at(states, t - 1) : h_first; }
 };
 
-/// The weights are the same at every step: they are packed once for all.
+/// The weights are the same at every step: they are packed once for all, where there are enough to pay for
+/// it.
 inline void pack_weights(const LstmPass& pass, GemmCall& call) {
-  if (pass.frames() > 2) call.b_panels = pack_b(pass.context(), call);
+  if (pass.frames() > 8) call.b_panels = pack_b(pass.context(), call);
 }
 
 /// to[t] = h W_hh^T + from[t], with h [B, k] and t yet to be named: what a state does to the next gates.

@@ -54,14 +54,16 @@ struct RolloutLayers {
       : first(context, w.layer0.value()), second(context, w.layer1.value()) {}
 };
 
-inline RolloutTrace rollout_forward(const Tensor& given, const Tensor& x_gates, const RolloutWeights& w) {
+/// With `keep`, the trace holds the gates of all steps, for rollout_backward.
+inline RolloutTrace rollout_forward(const Tensor& given, const Tensor& x_gates, const RolloutWeights& w,
+                                    bool keep) {
   const Context& context = given.context();
   const std::size_t k = w.diff.dim(1), batch = given.dim(1), frames = x_gates.dim(0) + 1;
   const RolloutShape s{frames, batch, given.dim(2), k, given.dim(0)};
   RolloutTrace trace{s,
                      Tensor(context, {frames + 1, batch, s.width()}),
-                     Tensor(context, {frames - 1, batch, 4 * k}),
-                     Tensor(context, {frames - 1, batch, 4 * k}),
+                     Tensor(context, {keep ? frames - 1 : 1, batch, 4 * k}),
+                     Tensor(context, {keep ? frames - 1 : 1, batch, 4 * k}),
                      Tensor(context, {frames, batch, k}),
                      Tensor(context, {frames, batch, k})};
   const auto clear = [&](const Tensor& t) {
@@ -86,8 +88,8 @@ inline RolloutTrace rollout_forward(const Tensor& given, const Tensor& x_gates, 
                        .c_before = {trace.c0, s.state_at(t - 1)},
                        .h = {trace.rows, s.h0_at(t)},
                        .c = {trace.c0, s.state_at(t)},
-                       .gates = {trace.gates0, s.gates_at(t)},
-                       .keep_gates = true});
+                       .gates = {trace.gates0, keep ? s.gates_at(t) : 0},
+                       .keep_gates = keep});
     layers.second.step({.batch = batch,
                         .rows = {trace.rows, s.h0_at(t)},
                         .width = s.width(),
@@ -96,8 +98,8 @@ inline RolloutTrace rollout_forward(const Tensor& given, const Tensor& x_gates, 
                         .c_before = {trace.c1, s.state_at(t - 1)},
                         .h = {trace.rows, s.h1_at(t)},
                         .c = {trace.c1, s.state_at(t)},
-                        .gates = {trace.gates1, s.gates_at(t)},
-                        .keep_gates = true});
+                        .gates = {trace.gates1, keep ? s.gates_at(t) : 0},
+                        .keep_gates = keep});
     if (t < s.given) continue;
     move.a_offset[0] = s.h1_at(t);
     move.c_offset = s.pose_at(t);
@@ -223,7 +225,8 @@ inline Var rollout(const Var& given, const Var& x_gates, const RolloutWeights& w
           "rollout: given ", given.shape(), ", gates ", x_gates.shape(), ", weights ", w.layer0.shape(), ", ",
           w.layer1.shape(), ", ", w.diff.shape());
   if (frames == 1) return given;
-  const detail::RolloutTrace trace = detail::rollout_forward(given.value(), x_gates.value(), w);
+  const detail::RolloutTrace trace =
+      detail::rollout_forward(given.value(), x_gates.value(), w, detail::recording());
   const detail::RolloutShape& s = trace.shape;
   Tensor motion(given.context(), {frames, s.batch, dof});
   detail::copy_runs(trace.rows, 0, s.width(), motion, 0, dof, frames * s.batch, dof);
