@@ -50,6 +50,26 @@ TEST_CASE("a run that is stopped and resumed ends bit-equal to one that was not"
   }
 }
 
+TEST_CASE("the recurrent networks: any number of frames, stopped and resumed") {
+  const TestFolder folder;
+  const std::string train =
+      "train dvgan --procedural 6 --generator rnn --critic rnn --frames 12 --hidden 8 --batch 4 "
+      "--critic-steps 1";
+  const Said whole = call(train + " --save whole --iterations 3");
+  CHECK(whole.status == 0);
+  CHECK_MESSAGE(whole.has("RNN, "), whole.text);
+  REQUIRE(call(train + " --save parts --iterations 1").status == 0);
+  REQUIRE(call("train dvgan --resume --save parts --iterations 3").status == 0);
+  CHECK(checkpoint("parts") == checkpoint("whole"));
+  const Said model = call("info whole/generator.safetensors");
+  CHECK(model.has("dvgan_rnn_generator"));
+  CHECK(model.has("final-cut off"));
+  const Said cnn_critic = call("train dvgan --procedural 6 --generator rnn --frames 12 --save other");
+  CHECK(cnn_critic.status == 1);
+  CHECK(cnn_critic.has("12 was asked; the nearest are 8 and 16"));
+  CHECK(call("train dvgan --procedural 6 --generator gru --save other").status > 1);  // usage
+}
+
 TEST_CASE("Ctrl-C saves and says how to go on; a killed run resumes from its last checkpoint") {
   const TestFolder folder;
   const std::string train = "train dvgan --procedural 6 --log-every 1" + tiny;
