@@ -31,6 +31,12 @@ void add_synth(CLI::App& app, Job& job);
 void add_compare(CLI::App& app, Job& job);
 void add_demo(CLI::App& app, Job& job);
 
+/// How this command was called, for lines that a reader is to type: "motiongan", or the path to it.
+inline std::string& program() {
+  static std::string name = "motiongan";
+  return name;
+}
+
 /// "1 clip", "35 clips".
 inline std::string counted(std::size_t n, std::string_view what) {
   return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");

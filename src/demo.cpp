@@ -187,12 +187,12 @@ int run_demo(const DemoArgs& demo) {
   const std::string save = (out / "save").string();
   fmt::print("\nlook at {} in a browser\n", fs::absolute(out / "motions.html").lexically_normal().string());
   fmt::print("\nmore from this model\n");
-  fmt::print("  motiongan generate {} --text \"{}\" --count 4 --rate 30 --html more.html\n", save,
+  fmt::print("  {} generate {} --text \"{}\" --count 4 --rate 30 --html more.html\n", program(), save,
              clips_to_show(data).front()->captions.front());
-  fmt::print("  motiongan train dvgan --resume --save {}\n", save);
+  fmt::print("  {} train dvgan --resume --save {}\n", program(), save);
   fmt::print("the same with your own clips (captions.tsv: a line `clip id <TAB> description` for each)\n");
-  fmt::print("  motiongan train dvgan my-clips --captions captions.tsv --save save/mine\n");
-  fmt::print("  motiongan generate save/mine --text \"walk\" --count 4 --rate 30 --html mine.html\n");
+  fmt::print("  {} train dvgan my-clips --captions captions.tsv --save save/mine\n", program());
+  fmt::print("  {} generate save/mine --text \"walk\" --count 4 --rate 30 --html mine.html\n", program());
   return 0;
 }
 

@@ -62,6 +62,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   // Lines appear when they are written, also between the lines of the progress bar in a file.
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
+  if (argc > 0 && *argv[0] != '\0') motiongan::command::program() = argv[0];
   try {
     return motiongan::command::run(argc, argv);
   } catch (const std::bad_alloc&) {

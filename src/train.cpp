@@ -80,8 +80,8 @@ int run_training(TrainArgs args, const CLI::App& verb) {
   bar.finish();
   fmt::print("{} after {} of {} iterations; saved in {}\n", result.stopped ? "stopped" : "finished",
              result.iterations, args.training.iterations, folder.string());
-  if (result.stopped) fmt::print("continue: motiongan train dvgan --resume --save {}\n", folder.string());
-  fmt::print("generate: motiongan generate {} --text \"{}\"\n", folder.string(),
+  if (result.stopped) fmt::print("continue: {} train dvgan --resume --save {}\n", program(), folder.string());
+  fmt::print("generate: {} generate {} --text \"{}\"\n", program(), folder.string(),
              data.train.front().captions.front());
   return caught_signal() != 0 ? 128 + caught_signal() : 0;
 }
@@ -176,6 +176,11 @@ void add_train(CLI::App& app, Job& job) {
   option("--epsilon", a.training.adam.epsilon, "Adam's")->check(not_negative())->group("Training");
   verb->add_flag("--shift,!--no-shift", a.training.input_shift,
                  "shift motions in time before the critic [on]")
+      ->group("Training");
+  option("--completions", a.training.completion_share,
+         "share of the steps in which the RNN generator goes on from real first frames; the paper: 0")
+      ->check(CLI::Range(0.0, 1.0))
+      ->type_name("SHARE")
       ->group("Training");
   option("--seed", a.training.seed, "of first weights, batches and noise")
       ->check(not_negative())

@@ -40,6 +40,7 @@ void each_kept(TrainArgs& a, F&& f) {
   f("--level-weights", a.level_weights);
   f("--diff-input", a.diff_input);
   f("--shift", a.training.input_shift);
+  f("--completions", a.training.completion_share);
 }
 
 volatile std::sig_atomic_t signal_number = 0;
@@ -100,6 +101,8 @@ void fill_in_choices(TrainArgs& a) {
   critic.level_weights = a.level_weights == "softmax" ? LevelWeights::softmax : LevelWeights::exp;
   critic.diff_input = a.diff_input == "difference" ? DiffInput::difference : DiffInput::hidden;
   a.model.seed = a.training.seed;
+  require(a.training.completion_share == 0 || a.generator == "rnn",
+          "--completions needs --generator rnn: the CNN generator completes nothing");
   if (a.generator == "cnn" || a.critic == "cnn")
     levels_of(a.data.frames);
   else

@@ -165,6 +165,36 @@ TEST_CASE("the same for the recurrent networks") {
   CHECK(now.bytes_in_use == warm.bytes_in_use);
 }
 
+TEST_CASE("completions in training: fakes that begin as the real motion does") {
+  const DvganOptions sizes{.generator = Generator::rnn, .hidden = 8};
+  const auto options = [](double share) {
+    return DvganTrainOptions{.critic_steps = 2, .batch = 3, .completion_share = share};
+  };
+  Run none(options(0), sizes), all(options(1), sizes), again(options(1), sizes);
+  for (Run* run : {&none, &all, &again})
+    for (int i = 0; i < 2; ++i) run->trainer.iterate();
+  CHECK(all.generator() != none.generator());
+  CHECK(all.generator() == again.generator());
+  // What is given needs no first pose: with nothing but completions, nothing moves what makes it.
+  const auto first = Run(options(1), sizes).generator(), after = all.generator();
+  const auto parameters = named_parameters(all.model);
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    const std::string& name = parameters[i].name;
+    CAPTURE(name);
+    CHECK((after[i] == first[i]) == (name.starts_with("initial_plot.") || name.starts_with("decode.")));
+  }
+  const NoGrad values_only;
+  const Batch batch = WindowSampler(all.context, small_data()).draw(1, 0, 2);
+  const std::vector<float> fake =
+      all.model.complete(batch.text, slice(Var::constant(batch.motion), 0, 0, 3), {}).value().to_host();
+  const std::vector<float> real = batch.motion.to_host();
+  const auto given = static_cast<std::ptrdiff_t>(3 * 2 * small_data().format.dof());
+  CHECK(std::equal(real.begin(), real.begin() + given, fake.begin()));
+  CHECK(fake != real);
+  CHECK(says(message_of([&] { Run(options(0.5)); }), "CNN generator"));
+  CHECK(says(message_of([&] { Run(options(1.5), sizes); }), "1.5"));
+}
+
 TEST_CASE("windows are a function of seed and step, and are real windows of the training clips") {
   const Context context;
   const motion::Dataset& data = small_data();

@@ -35,6 +35,7 @@ enum class Stream : std::uint32_t {
   cut = 4,
   shift = 5,
   mix = 6,
+  seeding = 7,
   noise = 32
 };
 

@@ -77,6 +77,12 @@ class Dvgan {
     return cnn()(text, cnn().noise(context_, key, text.batch, cut), cut);
   }
 
+  /// The same with given first frames, `seed` [n, B, M], 1 <= n <= N: completions of N frames, never cut.
+  /// Error for a CNN generator.
+  Var complete(const Sentences& text, const Var& seed, const RandomKey& key) const {
+    return rnn()(text, rnn().noise(context_, key, text.batch, format_.frames), {}, seed);
+  }
+
   /// Normalised poses of `count` motions, each [frames, dof], one after the other. A caption without a word
   /// is an Error; words that the training captions did not have count as unknown. A motion that is not of N
   /// frames is not cut out of a longer one.

@@ -22,6 +22,7 @@ inline nlohmann::json to_json(const DvganTrainOptions& o) {
           {"validation", static_cast<int>(o.critic.validation)},
           {"level_weights", static_cast<int>(o.critic.level_weights)},
           {"diff_input", static_cast<int>(o.critic.diff_input)},
+          {"completion_share", o.completion_share},
           {"seed", o.seed}};
 }
 

@@ -17,6 +17,10 @@ struct DvganTrainOptions {
   AdamOptions adam{};       ///< of both networks
   bool input_shift = true;  ///< move each real/fake pair by up to N/2 frames at the critic's input
   DvganCriticOptions critic{};
+  /// Share of the steps whose fakes are completions: they begin with 1 to N/2 frames of the real motion (one
+  /// number for the batch). The paper has none; a generator that completed in training completes better.
+  /// Needs an RNN generator.
+  double completion_share = 0;
   std::uint64_t seed = 1;
 };
 
@@ -49,6 +53,9 @@ class DvganTrainer {
             "the data set (", data.format.dof(), " dof, ", data.format.frames, " frames, ",
             data.format.vocabulary.size(), " words) does not fit the model (", model.format().dof(), ", ",
             model.format().frames, ", ", model.format().vocabulary.size(), ")");
+    require(options.completion_share >= 0 && options.completion_share <= 1, "a completion_share of ",
+            options.completion_share, ", expected 0 to 1");
+    if (options.completion_share > 0) model.rnn();  // refuses a CNN
     require((options.iterations + 1) * (options.critic_steps + 1) < (std::size_t{1} << 24),
             options.iterations, " iterations of ", options.critic_steps,
             " critic steps are more than the random numbers' counter holds (2^24 steps)");
@@ -79,7 +86,7 @@ class DvganTrainer {
     Var fake;
     {
       const NoGrad values_only;
-      fake = model_.make(batch.text, key);
+      fake = make_fake(batch, key);
     }
     const Indices shift = draw_shift(key);
     const Tensor real = shifted(Var::constant(batch.motion), shift).value();
@@ -97,7 +104,7 @@ class DvganTrainer {
   void generator_step(std::uint32_t step) {
     const RandomKey key{.seed = options_.seed, .step = step};
     const Batch batch = windows_.draw(options_.seed, step, options_.batch);
-    const Var fake = shifted(model_.make(batch.text, key), draw_shift(key));
+    const Var fake = shifted(make_fake(batch, key), draw_shift(key));
     Var h_txt;
     {
       const NoGrad values_only;  // the critic's view of the text does not depend on the generator
@@ -114,6 +121,16 @@ class DvganTrainer {
   }
 
  private:
+  /// A fake for each real motion of the batch, of its caption.
+  Var make_fake(const Batch& batch, const RandomKey& key) const {
+    const RandomKey draw = key.with(Stream::seeding);
+    const double chance = (static_cast<double>(random_word(draw, 0)) + 0.5) * 0x1p-32;
+    if (!(chance < options_.completion_share)) return model_.make(batch.text, key);
+    const std::size_t given =
+        1 + random_below(draw, 0, std::max<std::size_t>(1, model_.format().frames / 2), 1);
+    return model_.complete(batch.text, slice(Var::constant(batch.motion), 0, 0, given), key);
+  }
+
   /// One shift of a whole number of frames in [-N/2, N/2] for each sample; empty when shifting is off.
   Indices draw_shift(const RandomKey& key) const {
     if (!options_.input_shift) return {};
