@@ -95,7 +95,7 @@ class RnnGenerator {
     require(cut.empty() || seed.empty(), "RnnGenerator: a completion is not cut");
     const std::size_t frames = z.dim(0);
     const Var h_txt = text_(text);
-    const Var given = seed.empty() ? first_pose(h_txt, slice(z, 0, 0, 1)) : seed;
+    Var given = seed.empty() ? first_pose(h_txt, slice(z, 0, 0, 1)) : seed;
     if (frames == 1) return given;
     const Folded folded = fold();
     const Var motion = rollout(given, plot_gates(folded, h_txt, slice(z, 0, 1, frames - 1)), folded.rollout);
