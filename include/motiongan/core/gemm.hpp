@@ -51,7 +51,7 @@ inline Tensor pack_b(const Context& context, const GemmCall& call,
   const std::size_t columns = 2 * context.vector_width(), panels = (call.n + columns - 1) / columns;
   const std::size_t block = detail::gemm_block(context);
   Tensor packed(context, {panels, call.k, columns});
-  context.launch("gemm", "gemm_pack", Grid::groups(panels, (call.k + block - 1) / block),
+  context.launch("gemm_packed", "gemm_pack", Grid::groups(panels, (call.k + block - 1) / block),
                  detail::At{call.b, call.b_offset[0]}, call.b_transposed ? std::size_t{1} : call.b_ld,
                  call.b_transposed ? call.b_ld : std::size_t{1}, call.n, call.k, packed);
   return packed;

@@ -79,7 +79,7 @@ inline void launch_gemm(const Context& context, const GemmCall& g) {
   to.panels_at_once = narrow(split.panels_at_once);
   const std::size_t columns = 2 * context.vector_width() * split.panels;
   if (is_packed) to.b_first = first(g.b_panels);
-  context.launch("gemm", is_packed ? "gemm_packed" : "gemm",
+  context.launch(is_packed ? "gemm_packed" : "gemm", is_packed ? "gemm_packed" : "gemm",
                  Grid::groups((g.n + columns - 1) / columns, (g.m + split.rows - 1) / split.rows, g.batch),
                  buffer(g.a), buffer(is_packed ? g.b_panels : g.b), g.c.buffer(), buffer(g.bias),
                  buffer(g.residual), to);

@@ -21,11 +21,17 @@ inline const char* kernel_file(std::string_view name) {
   if (name == "reduce") return kernels::reduce;
   if (name == "layout") return kernels::layout;
   if (name == "gemm") return kernels::gemm;
+  if (name == "gemm_packed") return kernels::gemm_packed;
   if (name == "softmax") return kernels::softmax;
   if (name == "lstm") return kernels::lstm;
   if (name == "random") return kernels::random;
   if (name == "adam") return kernels::adam;
   throw Error("there is no kernel file cl/", name, ".cl");
+}
+
+/// What stands between prelude.cl and cl/<name>.cl; empty for most.
+inline const char* shared_part(std::string_view name) {
+  return name.starts_with("gemm") ? kernels::gemm_tiles : "";
 }
 
 /// Programs and kernels of one context, built when first asked for and kept.
@@ -55,8 +61,9 @@ class ProgramCache {
   cl_program program(const std::string& file) {
     if (const auto found = programs_.find(file); found != programs_.end()) return found->second.get();
     // The #line directives make the compiler name the real files in its messages.
-    const std::string text = concat("#line 1 \"prelude.cl\"\n", kernels::prelude, "\n#line 1 \"", file,
-                                    ".cl\"\n", kernel_file(file));
+    const std::string text =
+        concat("#line 1 \"prelude.cl\"\n", kernels::prelude, "\n#line 1 \"gemm_tiles.cl\"\n",
+               shared_part(file), "\n#line 1 \"", file, ".cl\"\n", kernel_file(file));
     const char* source = text.c_str();
     cl_int code = CL_SUCCESS;
     ClProgram program(clCreateProgramWithSource(context_, 1, &source, nullptr, &code));

@@ -28,7 +28,7 @@ class LstmStepper {
     if (choose_engine(context, GemmEngine::automatic) != GemmEngine::native) return;
     const std::size_t panels = 2 * vectors(context, k_), columns = 2 * context.vector_width();
     packed_ = Tensor(context, {panels, in_, columns});
-    context.launch("gemm", "gemm_pack_gates",
+    context.launch("gemm_packed", "gemm_pack_gates",
                    Grid::groups(panels, (in_ + gemm_block(context) - 1) / gemm_block(context)), weight, in_,
                    k_, packed_);
   }
@@ -41,9 +41,9 @@ class LstmStepper {
       const std::size_t row_groups = std::max<std::size_t>(1, wanted / units), tile = 6;
       const std::size_t rows = ((s.batch + row_groups - 1) / row_groups + tile - 1) / tile * tile;
       context.count_gemm_flops(2.0 * static_cast<double>(s.batch * 4 * k_ * in_));
-      context.launch("gemm", "gemm_lstm_cell", Grid::groups(units, (s.batch + rows - 1) / rows), s.rows,
-                     s.width, in_, packed_, s.extra, extra_row, s.c_before, s.h, s.width, s.c, s.gates,
-                     static_cast<cl_uint>(s.keep_gates), s.batch, k_, rows);
+      context.launch("gemm_packed", "gemm_lstm_cell", Grid::groups(units, (s.batch + rows - 1) / rows),
+                     s.rows, s.width, in_, packed_, s.extra, extra_row, s.c_before, s.h, s.width, s.c,
+                     s.gates, static_cast<cl_uint>(s.keep_gates), s.batch, k_, rows);
       return;
     }
     GemmCall call{.m = s.batch, .n = 4 * k_, .k = in_, .a = s.rows.tensor, .b = weight_, .c = s.gates.tensor};
