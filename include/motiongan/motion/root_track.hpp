@@ -17,6 +17,7 @@ struct RootTrack {
   double x = 0, z = 0;  ///< in the file's unit
   double yaw = 0;       ///< radians
   bool started = false;
+  double height = 0;  ///< the root's y, in the file's unit; PositionLayout sets and reads it
 };
 
 /// Turns the ground coordinates by `yaw` radians about y, as axis_rotation(1, yaw) turns a vector.

@@ -2,16 +2,15 @@
 // round the figure stands. The player and the pose strip both draw this.
 #pragma once
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "motiongan/core/error.hpp"
+#include "motiongan/motion/body_side.hpp"
 #include "motiongan/motion/kinematics.hpp"
 #include "motiongan/motion/skeleton.hpp"
 
@@ -24,27 +23,8 @@ struct ViewedMotion {
   std::size_t seed_frames = 0;  ///< the first frames that were given rather than generated: drawn in grey
 };
 
-enum class Side : std::uint8_t { centre, left, right };
-
-/// Which side of the body a joint is on, by its name: "LeftFoot", "LThumb", "UpperLeg_L",
-/// "mixamorig:LeftArm".
-inline Side side_of(std::string_view name) {
-  name.remove_prefix(name.rfind(':') == std::string_view::npos ? 0 : name.rfind(':') + 1);
-  std::string lower;
-  for (const char c : name) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (lower.find("left") != std::string::npos) return Side::left;
-  if (lower.find("right") != std::string::npos) return Side::right;
-  const std::size_t n = name.size();
-  if (n < 2) return Side::centre;
-  const auto stands_alone = [](char c) { return c == '_' || c == '.' || c == '-' || c == ' '; };
-  const auto letter = [](char c) {
-    return c == 'l' || c == 'L' ? Side::left : c == 'r' || c == 'R' ? Side::right : Side::centre;
-  };
-  if (stands_alone(name[n - 2]) && letter(name[n - 1]) != Side::centre) return letter(name[n - 1]);
-  if (stands_alone(name[1])) return letter(name[0]);
-  // "LHipJoint" but not "LowerBack"; a small first letter as in "lFoot".
-  return std::isupper(static_cast<unsigned char>(name[1])) ? letter(name[0]) : Side::centre;
-}
+using motion::Side;
+using motion::side_of;
 
 /// A motion as points and bones. Joints that always coincide with their parent are drawn as one point.
 struct Figure {
