@@ -10,6 +10,8 @@
 #include "motiongan/autograd/grad.hpp"
 #include "motiongan/autograd/var.hpp"
 //
+#include "motiongan/ops/attention.hpp"
+#include "motiongan/ops/cross_entropy.hpp"
 #include "motiongan/ops/elementwise.hpp"
 #include "motiongan/ops/layout.hpp"
 #include "motiongan/ops/lstm.hpp"
@@ -21,6 +23,7 @@
 #include "motiongan/nn/linear.hpp"
 #include "motiongan/nn/lstm.hpp"
 #include "motiongan/nn/module.hpp"
+#include "motiongan/nn/self_attention.hpp"
 #include "motiongan/nn/text_encoder.hpp"
 //
 #include "motiongan/optim/adam.hpp"
@@ -39,10 +42,14 @@
 #include "motiongan/io/safetensors.hpp"
 #include "motiongan/io/state_dict.hpp"
 //
+#include "motiongan/models/attention_classifier.hpp"
+#include "motiongan/models/attention_critic.hpp"
+#include "motiongan/models/attention_generator.hpp"
 #include "motiongan/models/cnn_critic.hpp"
 #include "motiongan/models/cnn_generator.hpp"
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/models/dvgan_critic.hpp"
+#include "motiongan/models/lstm_baseline.hpp"
 #include "motiongan/models/rnn_critic.hpp"
 #include "motiongan/models/rnn_generator.hpp"
 #include "motiongan/models/rnn_stream.hpp"

@@ -78,9 +78,9 @@ TEST_CASE("Conv1d::down is Down of the convolution, and so are its gradients") {
     const Var x = Var::leaf(random(frames, 2, 5).value());
     const std::size_t half = frames / 2;
     const Var plain = sum_frames(slice(conv(x), 0, 0, 2 * half), 2, 0.5),
-              quick = conv_down(pair_means(x), conv.weight, conv.bias, frames, false);
+              quick = conv_down(pair_means(x), conv.weight, conv.bias, frames);
     check_near(quick.value().to_host<double>(), plain.value().to_host<double>());
-    check_near(conv_down(pair_means(x), conv.weight, conv.bias, frames, true).value().to_host<double>(),
+    check_near(conv_down(pair_means(x), conv.weight, conv.bias, frames, {.relu = true}).value().to_host<double>(),
                relu(plain).value().to_host<double>());
     const std::vector<Var> wanted{x, conv.weight, conv.bias};
     const std::vector<Var> a = grad(square(plain), wanted), b = grad(square(quick), wanted);
@@ -88,7 +88,7 @@ TEST_CASE("Conv1d::down is Down of the convolution, and so are its gradients") {
       check_near(b[i].value().to_host<double>(), a[i].value().to_host<double>());
   }
   const Conv1d five(init, 2, 2, 5);
-  CHECK_THROWS_WITH_AS(conv_down(random(4, 1, 2), five.weight, five.bias, 4, false),
+  CHECK_THROWS_WITH_AS(conv_down(random(4, 1, 2), five.weight, five.bias, 4),
                        "conv_down: 3 taps expected, 5 found", Error);
 }
 

@@ -1,6 +1,7 @@
 // Every differentiable operation: first, second and third derivative against central differences, in double.
 #include <doctest/doctest.h>
 
+#include <motiongan/ops/cross_entropy.hpp>
 #include <motiongan/ops/lstm.hpp>
 #include <motiongan/ops/taps.hpp>
 
@@ -58,6 +59,8 @@ TEST_CASE("sums and expansions") {
   check("repeat_frames", [](auto& v) { return square(repeat_frames(v[0], 2)); }, {x});
   check("sum_frames", [](auto& v) { return square(sum_frames(v[0], 2, 0.5)); }, {x});
   check("softmax", [](auto& v) { return softmax(v[0]) * v[1]; }, {x, randn({4, 3, 5})});
+  check("log_softmax", [](auto& v) { return square(log_softmax(v[0])) * v[1]; }, {x, randn({4, 3, 5})});
+  check("cross_entropy", [](auto& v) { return cross_entropy(v[0], v[1]); }, {randn({4, 3}), randn({4, 3})});
 }
 
 TEST_CASE("relu of a sum of which one part is repeated") {

@@ -103,7 +103,7 @@ class CnnCritic {
     if (!encode.empty()) down = taps(down, reshape(encode, {1, encode.dim(0), encode.dim(1)}), {0}, half);
     const Var inner =
         weight.dim(0) == 3
-            ? conv_down(pairs, weight, r.conv1.bias, frames, true)
+            ? conv_down(pairs, weight, r.conv1.bias, frames, {.relu = true})
             : relu(sum_frames(taps(h, weight, r.conv1.offsets(), frames, false, {.bias = r.conv1.bias}), 2,
                               0.5));
     return r.conv2(inner, {.residual = down});

@@ -45,12 +45,13 @@ struct Conv1d {
 
 /// Down(conv(x)) for a convolution of three taps, at half the arithmetic: the mean of two neighbouring
 /// outputs is the convolution of the means of neighbouring inputs. `pairs` is pair_means(x) of a motion of
-/// `frames` frames; ReLU follows if asked.
+/// `frames` frames; a residual and ReLU follow if asked.
 inline Var conv_down(const Var& pairs, const Var& weight, const Var& bias, std::size_t frames,
-                     bool with_relu) {
+                     const TapsExtras& extras = {}) {
   require(weight.dim(0) == 3, "conv_down: 3 taps expected, ", weight.dim(0), " found");
   const int half = static_cast<int>(frames / 2);
-  return taps(pairs, weight, {0, half + 1, 1}, frames / 2, false, {.bias = bias, .relu = with_relu});
+  return taps(pairs, weight, {0, half + 1, 1}, frames / 2, false,
+              {.bias = bias, .residual = extras.residual, .relu = extras.relu});
 }
 
 /// y = x W^T + b on the last axis; `weight` is [out, in] in files.

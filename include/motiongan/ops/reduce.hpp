@@ -165,4 +165,16 @@ inline Var softmax(const Var& x) {
                 });
 }
 
+/// Logarithm of softmax over the last axis, [..., n]: finite where softmax itself would round to 0.
+inline Var log_softmax(const Var& x) {
+  const std::size_t n = x.shape().back(), rows = x.size() / n;
+  Tensor value(x.context(), x.shape());
+  x.context().launch("softmax", "log_softmax_rows", Grid::items(rows), x.value(), value, rows, n);
+  return record("log_softmax", {x}, std::move(value),
+                [=](const Node& self, const Var& g, const Needs&) -> std::vector<Var> {
+                  const Var p = exp(detail::itself(self));
+                  return {g - p * expand(sum_last(g), rows, n, 1, 1, self.value.shape())};
+                });
+}
+
 }  // namespace motiongan

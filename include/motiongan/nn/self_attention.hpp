@@ -1,0 +1,50 @@
+// Self-attention over the frames of a motion (Malek-Podjaski & Deligianni, eq. 1-3; SPEC 5).
+#pragma once
+#include "motiongan/nn/linear.hpp"
+#include "motiongan/ops/attention.hpp"
+
+namespace motiongan {
+
+/// out = gamma * W_out(o) + x with o_j = sum over i of beta_ji value(x_i), beta_ji = softmax over i of
+/// query(x_i) . key(x_j). Query, key and value have C / 8 channels (rounded down), at least 1. gamma starts
+/// at 0: the layer is the identity until training opens it.
+struct SelfAttention {
+  static constexpr std::size_t reduction = 8;
+  Conv1d query, key, value, out;
+  Var gamma;  ///< [1]
+
+  SelfAttention() = default;
+  SelfAttention(Initializer& init, std::size_t channels) {
+    const std::size_t inner = std::max<std::size_t>(1, channels / reduction);
+    query = Conv1d(init, channels, inner);
+    key = Conv1d(init, channels, inner);
+    value = Conv1d(init, channels, inner);
+    out = Conv1d(init, inner, channels);
+    gamma = init.constant({1}, 0);
+  }
+
+  /// How much each frame takes from each, [B, T, T]: row j, column i (see attention_map).
+  Var map(const Var& x) const { return attention_map(query(x), key(x)); }
+
+  /// [T, B, C] -> [T, B, C].
+  Var operator()(const Var& x) const {
+    const std::size_t frames = x.dim(0), inner = query.out_channels(), channels = x.dim(2);
+    // One product for all three; gamma goes into the weights of the last, which are fewer than activations.
+    const Var all = taps(x, concat_axis({query.weight, key.weight, value.weight}, 1), {0}, frames, false,
+                         {.bias = concat_axis({query.bias, key.bias, value.bias}, 0)});
+    const auto part = [&](std::size_t i) { return slice(all, 2, i * inner, inner); };
+    const Var mixed = mix_frames(attention_map(part(0), part(1)), part(2));
+    return taps(mixed, out.weight * expand_scalar(gamma, out.weight.shape()), {0}, frames, false,
+                {.bias = out.bias * expand_scalar(gamma, {channels}), .residual = x});
+  }
+
+  void list_parameters(ParameterList& list) {
+    list.add_module("query", query);
+    list.add_module("key", key);
+    list.add_module("value", value);
+    list.add_module("out", out);
+    list.add("gamma", gamma);
+  }
+};
+
+}  // namespace motiongan

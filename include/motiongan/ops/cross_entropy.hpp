@@ -1,0 +1,26 @@
+// Classes as vectors, and what a wrong guess costs.
+#pragma once
+#include <span>
+
+#include "motiongan/ops/reduce.hpp"
+
+namespace motiongan {
+
+/// Rows of zeros with a one at each label: [B, classes].
+inline Tensor one_hot(const Context& context, std::span<const std::size_t> labels, std::size_t classes) {
+  std::vector<float> values(labels.size() * classes);
+  for (std::size_t b = 0; b < labels.size(); ++b) {
+    require(labels[b] < classes, "label ", labels[b], " of sample ", b, ", expected less than ", classes);
+    values[b * classes + labels[b]] = 1;
+  }
+  return Tensor::from(context, {labels.size(), classes}, values);
+}
+
+/// Mean over samples of -log softmax(logits)[label], [1]; logits [B, Y], `targets` [B, Y] one-hot.
+inline Var cross_entropy(const Var& logits, const Var& targets) {
+  require(logits.shape() == targets.shape(), "cross_entropy: logits ", logits.shape(), " and targets ",
+          targets.shape());
+  return affine(sum(log_softmax(logits) * targets), -1 / static_cast<double>(logits.dim(0)));
+}
+
+}  // namespace motiongan

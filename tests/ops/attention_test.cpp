@@ -1,0 +1,95 @@
+// Attention along time: values by the equations, derivatives against differences, gamma's start.
+#include <doctest/doctest.h>
+
+#include <motiongan/core/random.hpp>
+#include <motiongan/nn/self_attention.hpp>
+
+#include "../support/check_grads.hpp"
+#include "../support/messages.hpp"
+
+using namespace motiongan;
+using namespace motiongan::testing;
+
+namespace {
+
+/// A layer whose gamma is open.
+SelfAttention made(std::size_t channels, double gamma) {
+  Initializer init(double_context(), 3);
+  SelfAttention layer(init, channels);
+  layer.gamma = init.constant({1}, gamma);
+  return layer;
+}
+
+Var random(std::size_t frames, std::size_t batch, std::size_t channels, std::uint64_t seed = 1) {
+  return Var::constant(random_normal(double_context(), {.seed = seed}, frames, batch, channels));
+}
+
+}  // namespace
+
+TEST_CASE("products of frames, sample by sample") {
+  // Two samples of one channel: what each frame of a has to do with each of c.
+  const Var a = Var::constant(Tensor::from(double_context(), {2, 2, 1}, std::vector<double>{1, 10, 2, 20}));
+  const Var c =
+      Var::constant(Tensor::from(double_context(), {3, 2, 1}, std::vector<double>{1, 1, 3, 5, 4, 6}));
+  const Var map = frame_products(a, c);
+  CHECK(map.shape() == Shape{2, 2, 3});
+  CHECK(map.value().to_host<double>() == std::vector<double>{1, 3, 4, 2, 6, 8, 10, 50, 60, 20, 100, 120});
+  CHECK(mix_frames(map, c).value().to_host<double>() ==
+        std::vector<double>{1 + 9 + 16, 10 + 250 + 360, 2 + 18 + 32, 20 + 500 + 720});
+  CHECK(mix_frames(map, a, true).shape() == Shape{3, 2, 1});
+  CHECK(mix_frames(map, a, true).value().to_host<double>().front() == 1 + 4);
+  CHECK(message_of([&] {
+          frame_products(a, random(2, 3, 1));
+        }).starts_with("frame_products: shapes [2, 2, 1]"));
+  CHECK(message_of([&] {
+          mix_frames(map, a);
+        }).starts_with("mix_frames: a map [2, 2, 3] over frames [2, 2, 1]"));
+}
+
+TEST_CASE("rows of a map sum to one, over the frames that are taken from") {
+  const Var map = attention_map(random(4, 2, 3, 1), random(5, 2, 3, 2));
+  CHECK(map.shape() == Shape{2, 5, 4});
+  for (const double total : sum_last(map).value().to_host<double>()) CHECK(total == doctest::Approx(1));
+}
+
+TEST_CASE("first, second and third derivative") {
+  const auto check = [](const Function& f, const std::vector<Input>& at) {
+    CHECK(check_grads(double_context(), f, at, 3) < 1e-7);
+  };
+  const Input a = randn({3, 2, 4}), c = randn({5, 2, 4}), map = randn({2, 3, 5});
+  check([](auto& v) { return square(frame_products(v[0], v[1])); }, {a, c});
+  check([](auto& v) { return square(mix_frames(v[0], v[1])); }, {map, c});
+  check([](auto& v) { return square(mix_frames(v[0], v[1], true)); }, {map, a});
+  check([](auto& v) { return mix_frames(attention_map(v[0], v[1]), v[0]) * v[1]; }, {c, randn({5, 2, 4})});
+}
+
+TEST_CASE("the layer, by its input and all of its parameters") {
+  SelfAttention layer = made(8, 0.7);
+  std::vector<Input> at{randn({4, 2, 8})};
+  std::vector<Shape> shapes;
+  for (const NamedParameter& p : named_parameters(layer)) at.push_back(randn(p.value->shape()));
+  const Function f = [&](const std::vector<Var>& v) {
+    SelfAttention moved = layer;
+    const auto parameters = named_parameters(moved);
+    for (std::size_t i = 0; i < parameters.size(); ++i) *parameters[i].value = 0.3 * v[i + 1];  // mild maps
+    return square(moved(v[0]));
+  };
+  CHECK(check_grads(double_context(), f, at, 2) < 1e-7);
+}
+
+TEST_CASE("with gamma 0 the layer is the identity, and only gamma learns") {
+  Initializer init(double_context(), 3);
+  SelfAttention layer(init, 16);
+  CHECK(layer.gamma.item() == 0);
+  CHECK(layer.query.weight.shape() == Shape{1, 2, 16});
+  const Var x = random(6, 2, 16);
+  CHECK(layer(x).value().to_host<double>() == x.value().to_host<double>());
+  const auto parameters = named_parameters(layer);
+  const auto gradients = grad(sum(square(layer(x))), values_of(parameters));
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    double largest = 0;
+    for (const double g : gradients[i].value().to_host<double>()) largest = std::max(largest, std::abs(g));
+    CAPTURE(parameters[i].name);
+    CHECK((largest > 0) == (parameters[i].name == "gamma"));
+  }
+}
