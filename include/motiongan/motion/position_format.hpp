@@ -133,7 +133,7 @@ struct PositionFormat {
     }
     const bool alike = !classes.empty() && 2 * fewest <= std::max<std::size_t>(name.size(), 2);
     throw Error("there is no class '", name, "'",
-                alike ? "; is '" + classes[best] + "' meant?" : std::string(),
+                alike ? "; is '" + classes[best] + "' meant?" : std::string("."),
                 " The classes are: ", known.empty() ? std::string("none") : known);
   }
 
