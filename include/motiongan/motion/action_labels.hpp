@@ -41,10 +41,10 @@ inline ActionLabels parse_action_labels(std::string_view text, std::string_view 
     const std::string id(trim(raw.substr(0, tab))), label(trim(raw.substr(tab)));
     require(!id.empty(), name, ":", line, ": found no clip id before the tab");
     require(!label.empty(), name, ":", line, ": clip '", id, "' has no label after the tab");
-    const auto [at, is_new] = out.emplace(id, label);
-    require(is_new || at->second == label, name, ":", line, ": clip '", id, "' has the label '", label,
-            "', but in line ", lines[id], " '", at->second, "'; a clip has one label");
-    lines.emplace(id, line);
+    const std::size_t first = lines.emplace(id, line).first->second;
+    const std::string& known = out.emplace(id, label).first->second;
+    require(known == label, name, ":", line, ": clip '", id, "' has the label '", label, "', but in line ",
+            first, " '", known, "'; a clip has one label");
   }
   return out;
 }
