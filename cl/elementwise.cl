@@ -26,6 +26,7 @@ UNARY(exp_of, exp(v))
 UNARY(log_of, log(v))
 UNARY(sqrt_of, sqrt(v))
 UNARY(reciprocal, 1 / v)
+UNARY(clamp_of, clamp(v, (realv)a, (realv)b))
 
 BINARY(axpby, a* v + b * w)
 BINARY(product, v* w)

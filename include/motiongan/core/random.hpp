@@ -36,6 +36,7 @@ enum class Stream : std::uint32_t {
   shift = 5,
   mix = 6,
   seeding = 7,
+  rollout = 8,
   noise = 32
 };
 

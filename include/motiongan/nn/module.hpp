@@ -88,6 +88,27 @@ inline std::vector<Var> values_of(const std::vector<NamedParameter>& parameters)
   return values;
 }
 
+/// While one lives, the parameters are constants: nothing computed from them leads a gradient to them, and
+/// grad() refuses to be asked for one. For networks that another one is trained through.
+class Frozen {
+ public:
+  explicit Frozen(const std::vector<NamedParameter>& parameters) {
+    for (const NamedParameter& p : parameters) {
+      if (!p.value->requires_grad()) continue;  // frozen already
+      nodes_.push_back(p.value->node());
+      nodes_.back()->requires_grad = false;
+    }
+  }
+  ~Frozen() {
+    for (const auto& node : nodes_) node->requires_grad = true;
+  }
+  Frozen(const Frozen&) = delete;
+  Frozen& operator=(const Frozen&) = delete;
+
+ private:
+  std::vector<std::shared_ptr<Node>> nodes_;
+};
+
 inline std::size_t parameter_count(const std::vector<NamedParameter>& parameters) {
   std::size_t n = 0;
   for (const NamedParameter& p : parameters) n += p.value->size();

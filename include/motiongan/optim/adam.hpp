@@ -58,6 +58,13 @@ class Adam {
                              Real{options_.epsilon});
   }
 
+  /// Brings every parameter into [-limit, limit]: the weight clipping of the first Wasserstein GAN.
+  void clip(double limit) {
+    require(limit > 0, "Adam: parameters cannot be clipped at ", limit, ", expected a number above 0");
+    values_.context().launch("elementwise", "clamp_of", detail::vector_grid(values_), values_, values_,
+                             values_.size(), Real{-limit}, Real{limit});
+  }
+
   /// The running means, for checkpoints: all parameters one after the other.
   Tensor& mean() { return mean_; }
   Tensor& square() { return square_; }

@@ -1,30 +1,17 @@
 // A training run on disk: everything that the next iteration depends on, in one file.
 #pragma once
 #include <charconv>
+#include <list>
 #include <map>
+#include <nlohmann/json.hpp>
+#include <string>
 
-#include "motiongan/train/dvgan_trainer.hpp"
+#include "motiongan/io/state_dict.hpp"
+#include "motiongan/optim/adam.hpp"
 
 namespace motiongan {
 
 namespace detail {
-
-inline nlohmann::json to_json(const DvganTrainOptions& o) {
-  return {{"critic_steps", o.critic_steps},
-          {"batch", o.batch},
-          {"lambda_gp", o.lambda_gp},
-          {"learning_rate", o.adam.learning_rate},
-          {"beta1", o.adam.beta1},
-          {"beta2", o.adam.beta2},
-          {"epsilon", o.adam.epsilon},
-          {"input_shift", o.input_shift},
-          {"critic", static_cast<int>(o.critic.critic)},
-          {"validation", static_cast<int>(o.critic.validation)},
-          {"level_weights", static_cast<int>(o.critic.level_weights)},
-          {"diff_input", static_cast<int>(o.critic.diff_input)},
-          {"completion_share", o.completion_share},
-          {"seed", o.seed}};
-}
 
 inline io::SafeTensor host_copy(const Tensor& t) {
   return t.context().precision() == Precision::f64 ? io::SafeTensor::of(t.shape(), t.to_host<double>())
@@ -72,22 +59,30 @@ inline RunRecord read_run_record(const std::filesystem::path& checkpoint) {
   return read_run_record(io::SafeTensors::read(checkpoint), checkpoint.string());
 }
 
-/// Writes the run's state: both networks, both optimisers, the position. Random numbers have no state: they
-/// are named by seed and step. The file is written beside and renamed, so a run killed at any moment leaves
-/// the last whole one.
-inline void save_checkpoint(DvganTrainer& trainer, const std::filesystem::path& path,
-                            const RunNotes& notes = {}) {
+/// A loss and its name, as they stand in a log.
+using LossColumn = std::pair<const char*, double>;
+
+/// One network of a training run with the optimiser that moves it.
+struct TrainedPart {
+  std::string name;  ///< what its tensors are called by in a checkpoint
+  std::vector<NamedParameter> parameters;
+  Adam* adam = nullptr;
+};
+
+/// Writes the run's state: all networks, all optimisers, the position. Random numbers have no state: they are
+/// named by seed and step. The file is written beside and renamed, so a run killed at any moment leaves the
+/// last whole one. A trainer has model(), parts(), options() (with a to_json) and iteration().
+template <class Trainer>
+void save_checkpoint(Trainer& trainer, const std::filesystem::path& path, const RunNotes& notes = {}) {
   io::SafeTensors file;
   trainer.model().describe(file);
-  io::save_parameters(named_parameters(trainer.model()), file, "generator.");
-  io::save_parameters(named_parameters(trainer.critic()), file, "critic.");
-  for (const auto& [name, adam] :
-       {std::pair{"generator", &trainer.generator_adam()}, std::pair{"critic", &trainer.critic_adam()}}) {
-    file.tensors[concat("adam.", name, ".mean")] = detail::host_copy(adam->mean());
-    file.tensors[concat("adam.", name, ".square")] = detail::host_copy(adam->square());
-    file.metadata[concat("adam.", name, ".steps")] = std::to_string(adam->steps());
+  for (const TrainedPart& part : trainer.parts()) {
+    io::save_parameters(part.parameters, file, part.name + ".");
+    file.tensors[concat("adam.", part.name, ".mean")] = detail::host_copy(part.adam->mean());
+    file.tensors[concat("adam.", part.name, ".square")] = detail::host_copy(part.adam->square());
+    file.metadata[concat("adam.", part.name, ".steps")] = std::to_string(part.adam->steps());
   }
-  file.metadata["training"] = detail::to_json(trainer.options()).dump();
+  file.metadata["training"] = to_json(trainer.options()).dump();
   file.metadata["iteration"] = std::to_string(trainer.iteration());
   for (const auto& [key, value] : notes) file.metadata["note." + key] = value;
   file.write(path);
@@ -96,7 +91,8 @@ inline void save_checkpoint(DvganTrainer& trainer, const std::filesystem::path& 
 /// Continues where save_checkpoint() left off, bit for bit as if the run had never stopped. The trainer must
 /// have been made with the same options and data; an Error says what differs, and leaves the trainer as it
 /// was.
-inline void load_checkpoint(DvganTrainer& trainer, const std::filesystem::path& path) {
+template <class Trainer>
+void load_checkpoint(Trainer& trainer, const std::filesystem::path& path) {
   const std::string where = path.string();
   const io::SafeTensors file = io::SafeTensors::read(path);
   const auto text = [&](const char* key) -> const std::string& {
@@ -109,31 +105,27 @@ inline void load_checkpoint(DvganTrainer& trainer, const std::filesystem::path& 
             ": the run was started with other data or another model (\"", key,
             "\" differs); give the options of ", "the first start, or another folder for a new run");
   // An option that is younger than the run had its default then.
-  auto before = detail::to_json(DvganTrainOptions{});
-  const auto then = nlohmann::json::parse(text("training"), nullptr, false),
-             now = detail::to_json(trainer.options());
+  auto before = to_json(std::decay_t<decltype(trainer.options())>{});
+  const auto then = nlohmann::json::parse(text("training"), nullptr, false), now = to_json(trainer.options());
   require(then.is_object(), where, ": the training options cannot be read");
   before.update(then);
   for (const auto& [key, value] : now.items())
     require(before.at(key) == value, where, ": the run was started with ", key, " = ", before.at(key).dump(),
             ", now ", value.dump(), " is asked; give the same, or another folder for a new run");
-  const std::size_t generator_steps = detail::checkpoint_number(file, "adam.generator.steps", where),
-                    critic_steps = detail::checkpoint_number(file, "adam.critic.steps", where),
-                    iteration = detail::checkpoint_number(file, "iteration", where);
+  const std::size_t iteration = detail::checkpoint_number(file, "iteration", where);
   // All tensors in one list: when one of them is wrong, nothing has changed.
-  Adam &generator = trainer.generator_adam(), &critic = trainer.critic_adam();
-  std::array<Var, 4> moments{Var::constant(generator.mean()), Var::constant(generator.square()),
-                             Var::constant(critic.mean()), Var::constant(critic.square())};
-  ParameterList all;
-  all.add_module("generator", trainer.model());
-  all.add_module("critic", trainer.critic());
-  all.add("adam.generator.mean", moments[0]);
-  all.add("adam.generator.square", moments[1]);
-  all.add("adam.critic.mean", moments[2]);
-  all.add("adam.critic.square", moments[3]);
-  io::load_parameters(all.items(), file, where);
-  generator.set_steps(generator_steps);
-  critic.set_steps(critic_steps);
+  const std::vector<TrainedPart> parts = trainer.parts();
+  std::list<Var> moments;
+  std::vector<NamedParameter> all;
+  std::vector<std::size_t> steps;
+  for (const TrainedPart& part : parts) {
+    for (const NamedParameter& p : part.parameters) all.push_back({part.name + "." + p.name, p.value, p.layout});
+    all.push_back({"adam." + part.name + ".mean", &moments.emplace_back(Var::constant(part.adam->mean()))});
+    all.push_back({"adam." + part.name + ".square", &moments.emplace_back(Var::constant(part.adam->square()))});
+    steps.push_back(detail::checkpoint_number(file, concat("adam.", part.name, ".steps"), where));
+  }
+  io::load_parameters(all, file, where);
+  for (std::size_t i = 0; i < parts.size(); ++i) parts[i].adam->set_steps(steps[i]);
   trainer.set_iteration(iteration);
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/models/dvgan_critic.hpp"
-#include "motiongan/optim/adam.hpp"
+#include "motiongan/train/checkpoint.hpp"
 #include "motiongan/train/wgan_gp.hpp"
 #include "motiongan/train/windows.hpp"
 
@@ -24,12 +24,37 @@ struct DvganTrainOptions {
   std::uint64_t seed = 1;
 };
 
+/// What a checkpoint keeps of them: all but `iterations`, which a resumed run may have more of.
+inline nlohmann::json to_json(const DvganTrainOptions& o) {
+  return {{"critic_steps", o.critic_steps},
+          {"batch", o.batch},
+          {"lambda_gp", o.lambda_gp},
+          {"learning_rate", o.adam.learning_rate},
+          {"beta1", o.adam.beta1},
+          {"beta2", o.adam.beta2},
+          {"epsilon", o.adam.epsilon},
+          {"input_shift", o.input_shift},
+          {"critic", static_cast<int>(o.critic.critic)},
+          {"validation", static_cast<int>(o.critic.validation)},
+          {"level_weights", static_cast<int>(o.critic.level_weights)},
+          {"diff_input", static_cast<int>(o.critic.diff_input)},
+          {"completion_share", o.completion_share},
+          {"seed", o.seed}};
+}
+
 /// What the last iteration came to; reading it waits for the device.
 struct DvganLosses {
   double wasserstein = 0;  ///< mean D(real) - mean D(fake) of the last critic step
   double penalty = 0;      ///< mean (|gradient| - 1)^2
   double generator = 0;    ///< -mean D(fake) of the generator's step
 };
+
+/// As they stand in the log.
+inline std::vector<LossColumn> columns(const DvganLosses& losses) {
+  return {{"wasserstein", losses.wasserstein},
+          {"penalty", losses.penalty},
+          {"generator_loss", losses.generator}};
+}
 
 /// Trains a Dvgan on a data set. One critic step and one generator step are also callable by themselves.
 class DvganTrainer {
@@ -68,6 +93,10 @@ class DvganTrainer {
   void set_iteration(std::size_t iteration) { iteration_ = iteration; }
   Adam& generator_adam() { return generator_adam_; }
   Adam& critic_adam() { return critic_adam_; }
+  std::vector<TrainedPart> parts() {
+    return {{"generator", named_parameters(model_), &generator_adam_},
+            {"critic", named_parameters(critic_), &critic_adam_}};
+  }
 
   /// critic_steps critic steps and a generator step.
   void iterate() {

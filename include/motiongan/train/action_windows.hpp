@@ -1,0 +1,87 @@
+// Batches of labelled windows for the second paper's training, drawn on the device from clips that stay there.
+#pragma once
+#include "motiongan/core/random.hpp"
+#include "motiongan/motion/action_dataset.hpp"
+#include "motiongan/ops/cross_entropy.hpp"
+
+namespace motiongan {
+
+/// Real priors and what followed them, [T, B, dof] each, with their classes.
+struct ActionBatch {
+  Tensor motion;                    ///< both, joined in time, [2T, B, dof]
+  Tensor prior, future;             ///< views of motion
+  std::vector<std::size_t> labels;  ///< [B]
+  Tensor classes;                   ///< one-hot, [B, Y]
+};
+
+/// All clips of one part of a data set in one device buffer. A batch is a function of (seed, step) alone, so a
+/// resumed run draws what an unbroken one would have drawn.
+class ActionSampler {
+ public:
+  /// `balanced`: draw the class first, so that classes of few clips are seen as often as others.
+  ActionSampler(const Context& context, const motion::ActionDataset& data,
+                const std::vector<motion::ActionClip>& clips, bool balanced = true)
+      : context_(context), frames_(data.format.frames), classes_(data.format.classes.size()), balanced_(balanced) {
+    require(!clips.empty(), "there are no clips to draw windows from");
+    const std::size_t dof = data.format.dof();
+    std::size_t rows = 0;
+    std::vector<std::vector<std::size_t>> by_class(classes_);
+    for (const motion::ActionClip& clip : clips) {
+      require(clip.label < classes_, "clip '", clip.id, "' has label ", clip.label, ", expected less than ", classes_);
+      by_class[clip.label].push_back(clips_.size());
+      clips_.push_back({rows, data.starts(clip), clip.label});
+      rows += clip.frames;
+    }
+    for (auto& members : by_class)
+      if (!members.empty()) by_class_.push_back(std::move(members));
+    poses_ = Tensor(context, {rows, dof});
+    std::size_t at = 0;
+    for (const motion::ActionClip& clip : clips) {
+      poses_.view(at * dof, {clip.frames, dof}).write(std::span<const float>(clip.poses));
+      at += clip.frames;
+    }
+    relative_ = Indices(context, std::vector<cl_int>(dof, 0));
+  }
+
+  /// `size` windows, each at a start of its clip, all uniform.
+  ActionBatch draw(std::uint64_t seed, std::uint32_t step, std::size_t size) const {
+    const RandomKey key{.seed = seed, .stream = Stream::windows, .step = step};
+    std::vector<cl_int> rows;
+    ActionBatch batch;
+    for (std::uint32_t b = 0; b < size; ++b) {
+      std::size_t index = 0;
+      if (balanced_) {
+        const auto& members = by_class_[random_below(key, b, by_class_.size(), 2)];
+        index = members[random_below(key, b, members.size())];
+      } else {
+        index = random_below(key, b, clips_.size());
+      }
+      const Clip& clip = clips_[index];
+      rows.push_back(static_cast<cl_int>(clip.first_row + random_below(key, b, clip.starts, 1)));
+      batch.labels.push_back(clip.label);
+    }
+    const std::size_t dof = poses_.dim(1), window = 2 * frames_;
+    batch.motion = Tensor(context_, {window, size, dof});
+    context_.launch("layout", "gather_windows", Grid::items(window * size), poses_, Indices(context_, rows),
+                    relative_, batch.motion, window, size, dof, std::size_t{1}, dof, dof, dof, Real{0});
+    batch.prior = batch.motion.view(0, {frames_, size, dof});
+    batch.future = batch.motion.view(frames_ * size * dof, {frames_, size, dof});
+    batch.classes = one_hot(context_, batch.labels, classes_);
+    return batch;
+  }
+
+ private:
+  struct Clip {
+    std::size_t first_row, starts, label;
+  };
+
+  Context context_;
+  std::size_t frames_, classes_;
+  bool balanced_;
+  std::vector<Clip> clips_;
+  std::vector<std::vector<std::size_t>> by_class_;  // clips of each class that has some
+  Tensor poses_;                                    // [all frames, dof]
+  Indices relative_;                                // none is
+};
+
+}  // namespace motiongan

@@ -1,0 +1,281 @@
+// Training the attention WGAN-GP (Malek-Podjaski & Deligianni; SPEC 5): critic, classifier and generator, each
+// through the others but without a gradient for them.
+#pragma once
+#include "motiongan/models/attention_classifier.hpp"
+#include "motiongan/models/attention_critic.hpp"
+#include "motiongan/models/attention_gan.hpp"
+#include "motiongan/models/motion_losses.hpp"
+#include "motiongan/train/action_windows.hpp"
+#include "motiongan/train/checkpoint.hpp"
+#include "motiongan/train/wgan_gp.hpp"
+
+namespace motiongan {
+
+/// Every number of SPEC 5; the defaults are the paper's.
+struct AttentionTrainOptions {
+  std::size_t iterations = 20'000;  ///< each is critic_steps, a classifier step and generator_steps
+  std::size_t critic_steps = 5;     ///< n_critic
+  std::size_t generator_steps = 1;  ///< n_generator
+  std::size_t batch = 64;
+  std::size_t rollouts = 2;      ///< n_ar: how many times the generator goes on from its own output
+  double lambda_gp = 10;         ///< weight of the gradient penalty
+  double weight_clip = 0;        ///< above 0: clip the critic's weights there, instead of the penalty
+  double skeleton_weight = 1;    ///< of L_skel; 0: without
+  double blend_weight = 1;       ///< of L_blend; 0: without
+  double class_weight = 1;       ///< of L_class; 0: without
+  bool skeleton_vectors = false; ///< L_skel compares bone vectors, as eq. 9 is printed, not their lengths
+  bool critic_classes = false;   ///< tell the critic the class
+  bool balanced = true;          ///< draw classes alike, however many clips they have
+  AdamOptions adam{};            ///< of all networks
+  std::uint64_t seed = 1;
+};
+
+/// What a checkpoint keeps of them: all but `iterations`, which a resumed run may have more of.
+inline nlohmann::json to_json(const AttentionTrainOptions& o) {
+  return {{"critic_steps", o.critic_steps},
+          {"generator_steps", o.generator_steps},
+          {"batch", o.batch},
+          {"rollouts", o.rollouts},
+          {"lambda_gp", o.lambda_gp},
+          {"weight_clip", o.weight_clip},
+          {"skeleton_weight", o.skeleton_weight},
+          {"blend_weight", o.blend_weight},
+          {"class_weight", o.class_weight},
+          {"skeleton_vectors", o.skeleton_vectors},
+          {"critic_classes", o.critic_classes},
+          {"balanced", o.balanced},
+          {"learning_rate", o.adam.learning_rate},
+          {"beta1", o.adam.beta1},
+          {"beta2", o.adam.beta2},
+          {"epsilon", o.adam.epsilon},
+          {"seed", o.seed}};
+}
+
+/// What the last iteration came to; reading it waits for the device.
+struct AttentionLosses {
+  double wasserstein = 0;  ///< mean D(real) - mean D(fake) of the last critic step
+  double penalty = 0;      ///< mean (|gradient| - 1)^2; 0 where weights are clipped instead
+  double adversarial = 0;  ///< -mean D(fake) of the generator's step
+  double skeleton = 0, blend = 0, classification = 0;  ///< the generator's, unweighted; 0 where their weight is
+  double classifier = 0;                               ///< the classifier's own loss on real motion
+  double accuracy = 0;                                 ///< share of that batch that it got right
+  double gamma = 0;                                    ///< of the generator's attention; 0 without
+};
+
+/// As they stand in the log.
+inline std::vector<LossColumn> columns(const AttentionLosses& l) {
+  return {{"wasserstein", l.wasserstein}, {"penalty", l.penalty},
+          {"adversarial", l.adversarial}, {"skeleton", l.skeleton},
+          {"blend", l.blend},             {"classification", l.classification},
+          {"classifier", l.classifier},   {"accuracy", l.accuracy},
+          {"gamma", l.gamma}};
+}
+
+/// Share of rows of logits [B, Y] whose largest number is at the label.
+inline double accuracy_of(const Tensor& logits, std::span<const std::size_t> labels) {
+  const std::vector<double> values = logits.to_host<double>();
+  const std::size_t classes = values.size() / labels.size();
+  std::size_t right = 0;
+  for (std::size_t b = 0; b < labels.size(); ++b) {
+    const auto row = values.begin() + static_cast<std::ptrdiff_t>(b * classes);
+    right += static_cast<std::size_t>(std::max_element(row, row + static_cast<std::ptrdiff_t>(classes)) - row) ==
+             labels[b];
+  }
+  return static_cast<double>(right) / static_cast<double>(labels.size());
+}
+
+/// Trains an AttentionGan on a data set. The three kinds of steps are also callable by themselves.
+class AttentionTrainer {
+ public:
+  AttentionTrainer(AttentionGan& model, const motion::ActionDataset& data, const AttentionTrainOptions& options)
+      : model_(model),
+        options_(checked(options)),
+        windows_(model.context(), data, data.train, options.balanced),
+        critic_(Initializer(model.context(), model.options().seed + 1),
+                {.dof = model.format().dof(),
+                 .hidden = model.options().hidden,
+                 .classes = options.critic_classes ? model.format().classes.size() : 0,
+                 .attention = model.options().attention}),
+        classifier_(Initializer(model.context(), model.options().seed + 2),
+                    {.dof = model.format().dof(),
+                     .classes = model.format().classes.size(),
+                     .hidden = model.options().hidden,
+                     .attention = model.options().attention}),
+        skeleton_loss_(model.context(), model.format(), options.skeleton_vectors),
+        generator_adam_(named_parameters(model), options.adam),
+        critic_adam_(named_parameters(critic_), options.adam),
+        classifier_adam_(named_parameters(classifier_), options.adam) {
+    model.generator();  // refuses the baseline
+    require(data.format.dof() == model.format().dof() && data.format.frames == model.format().frames &&
+                data.format.classes == model.format().classes,
+            "the data set (", data.format.dof(), " dof, ", data.format.frames, " frames, ",
+            data.format.classes.size(), " classes) does not fit the model (", model.format().dof(), ", ",
+            model.format().frames, ", ", model.format().classes.size(), ")");
+    require((options.iterations + 1) * steps_each() < (std::size_t{1} << 24), options.iterations, " iterations of ",
+            steps_each(), " steps are more than the random numbers' counter holds (2^24 steps)");
+  }
+
+  AttentionGan& model() { return model_; }
+  AttentionCritic& critic() { return critic_; }
+  AttentionClassifier& classifier() { return classifier_; }
+  const AttentionTrainOptions& options() const { return options_; }
+  std::size_t iteration() const { return iteration_; }
+  void set_iteration(std::size_t iteration) { iteration_ = iteration; }
+  std::vector<TrainedPart> parts() {
+    return {{"generator", named_parameters(model_), &generator_adam_},
+            {"critic", named_parameters(critic_), &critic_adam_},
+            {"classifier", named_parameters(classifier_), &classifier_adam_}};
+  }
+
+  /// critic_steps critic steps, a classifier step, generator_steps generator steps.
+  void iterate() {
+    auto step = static_cast<std::uint32_t>(iteration_ * steps_each());
+    for (std::size_t i = 0; i < options_.critic_steps; ++i) critic_step(step++);
+    classifier_step(step++);
+    for (std::size_t i = 0; i < options_.generator_steps; ++i) generator_step(step++);
+    ++iteration_;
+  }
+
+  /// One update of the critic; `step` numbers the step's random numbers. Its fakes are what rollout r made of what
+  /// rollout r - 1 had made, r uniform in 1..rollouts, so that later rollouts are not strange to it.
+  void critic_step(std::uint32_t step) {
+    const RandomKey key{.seed = options_.seed, .step = step};
+    const ActionBatch batch = windows_.draw(options_.seed, step, options_.batch);
+    const Var classes = Var::constant(batch.classes);
+    Var prior = Var::constant(batch.prior), future;
+    {
+      const NoGrad values_only;
+      const std::size_t times = 1 + random_below(key.with(Stream::rollout), 0, options_.rollouts);
+      for (std::size_t r = 0; r < times; ++r) {
+        if (r > 0) prior = future;
+        future = model_.make(prior, classes, noise_key(key, r));
+      }
+      future = concat_axis({prior, future}, 0);
+    }
+    const Judge judge = [&](const Var& x) { return judged(x, classes); };
+    const Judge judge_pairs = [&](const Var& x) { return judged(x, concat_axis({classes, classes}, 0)); };
+    CriticLoss loss;
+    if (options_.weight_clip > 0) {
+      loss.scores = judge_pairs(concat_axis({Var::constant(batch.motion), future}, 1));
+      loss.wasserstein = mean(slice(loss.scores, 0, 0, options_.batch)) -
+                         mean(slice(loss.scores, 0, options_.batch, options_.batch));
+      loss.loss = -loss.wasserstein;
+    } else {
+      loss = critic_loss(judge_pairs, judge, batch.motion, future.value(),
+                         random_uniform(model_.context(), key.with(Stream::mix), options_.batch), options_.lambda_gp);
+    }
+    critic_adam_.step(grad(loss.loss, critic_adam_.parameters()));
+    if (options_.weight_clip > 0) critic_adam_.clip(options_.weight_clip);
+    wasserstein_ = loss.wasserstein.detach();
+    penalty_ = loss.penalty.empty() ? Var() : loss.penalty.detach();
+  }
+
+  /// One update of the classifier, on real futures only.
+  void classifier_step(std::uint32_t step) {
+    const ActionBatch batch = windows_.draw(options_.seed, step, options_.batch);
+    const Var logits = classifier_(Var::constant(batch.future));
+    const Var loss = cross_entropy(logits, Var::constant(batch.classes));
+    classifier_adam_.step(grad(loss, classifier_adam_.parameters()));
+    classifier_loss_ = loss.detach();
+    logits_ = logits.value();
+    labels_ = batch.labels;
+  }
+
+  /// The parts of the generator's loss on a batch, each [1], empty where their weight is 0.
+  struct GeneratorLoss {
+    Var total, adversarial, skeleton, blend, classification;
+  };
+
+  /// What the generator's step minimises; `step` numbers the random numbers. Critic and classifier are frozen.
+  GeneratorLoss generator_loss_of(const ActionBatch& batch, std::uint32_t step) {
+    const Frozen critic_fixed(named_parameters(critic_)), classifier_fixed(named_parameters(classifier_));
+    const RandomKey key{.seed = options_.seed, .step = step};
+    const Var classes = Var::constant(batch.classes), real_prior = Var::constant(batch.prior);
+    std::vector<Var> priors, futures;
+    for (std::size_t r = 0; r < options_.rollouts; ++r) {
+      priors.push_back(r == 0 ? real_prior : futures.back());
+      futures.push_back(model_.make(priors.back(), classes, noise_key(key, r)));
+    }
+    // All rollouts side by side: a mean over the batch is the mean over them.
+    const auto repeated = [&](const Var& x, std::size_t axis) {
+      return concat_axis(std::vector<Var>(options_.rollouts, x), axis);
+    };
+    const Var fed = concat_axis(priors, 1), made = concat_axis(futures, 1), all_classes = repeated(classes, 0);
+    GeneratorLoss loss;
+    loss.adversarial = generator_loss(judged(concat_axis({fed, made}, 0), all_classes));
+    loss.total = loss.adversarial;
+    const auto add = [&](Var& part, double weight, const Var& value) {
+      part = value;
+      loss.total = weighted_sum(loss.total, 1, value, weight);
+    };
+    if (options_.skeleton_weight > 0)
+      add(loss.skeleton, options_.skeleton_weight,
+          skeleton_loss_(repeated(slice(real_prior, 0, 0, 1), 1), made));
+    if (options_.blend_weight > 0) add(loss.blend, options_.blend_weight, blend_loss(fed, made));
+    if (options_.class_weight > 0)
+      add(loss.classification, options_.class_weight, cross_entropy(classifier_(made), all_classes));
+    return loss;
+  }
+
+  /// One update of the generator; critic and classifier get no gradient.
+  void generator_step(std::uint32_t step) {
+    const Frozen critic_fixed(named_parameters(critic_)), classifier_fixed(named_parameters(classifier_));
+    const GeneratorLoss loss = generator_loss_of(windows_.draw(options_.seed, step, options_.batch), step);
+    generator_adam_.step(grad(loss.total, generator_adam_.parameters()));
+    const auto value = [](const Var& part) { return part.empty() ? Var() : part.detach(); };
+    generator_loss_ = {value(loss.total), value(loss.adversarial), value(loss.skeleton), value(loss.blend),
+                       value(loss.classification)};
+  }
+
+  AttentionLosses losses() const {
+    require(!generator_loss_.total.empty(), "no iteration has run yet");
+    const auto value = [](const Var& part) { return part.empty() ? 0.0 : part.item(); };
+    const auto& attention = model_.generator().attention();
+    return {.wasserstein = wasserstein_.item(),
+            .penalty = value(penalty_),
+            .adversarial = generator_loss_.adversarial.item(),
+            .skeleton = value(generator_loss_.skeleton),
+            .blend = value(generator_loss_.blend),
+            .classification = value(generator_loss_.classification),
+            .classifier = classifier_loss_.item(),
+            .accuracy = accuracy_of(logits_, labels_),
+            .gamma = attention ? attention->gamma.item() : 0};
+  }
+
+ private:
+  static const AttentionTrainOptions& checked(const AttentionTrainOptions& o) {
+    require(o.batch > 0 && o.critic_steps > 0 && o.generator_steps > 0 && o.rollouts > 0,
+            "batch, critic_steps, generator_steps and rollouts must be positive");
+    require(o.rollouts <= 64, "rollouts is ", o.rollouts, ", expected at most 64");
+    require(o.weight_clip >= 0 && o.skeleton_weight >= 0 && o.blend_weight >= 0 && o.class_weight >= 0,
+            "weight_clip and the losses' weights cannot be below 0");
+    return o;
+  }
+
+  std::size_t steps_each() const { return options_.critic_steps + 1 + options_.generator_steps; }
+
+  /// Each rollout of a step has noise of its own.
+  static RandomKey noise_key(RandomKey key, std::size_t rollout) {
+    key.first_frame = static_cast<std::int32_t>(rollout);
+    return key;
+  }
+
+  Var judged(const Var& motion, const Var& classes) const {
+    return options_.critic_classes ? critic_(motion, classes) : critic_(motion);
+  }
+
+  AttentionGan& model_;
+  AttentionTrainOptions options_;
+  ActionSampler windows_;
+  AttentionCritic critic_;
+  AttentionClassifier classifier_;
+  SkeletonLoss skeleton_loss_;
+  Adam generator_adam_, critic_adam_, classifier_adam_;
+  Var wasserstein_, penalty_, classifier_loss_;
+  GeneratorLoss generator_loss_;
+  Tensor logits_;
+  std::vector<std::size_t> labels_;
+  std::size_t iteration_ = 0;
+};
+
+}  // namespace motiongan
