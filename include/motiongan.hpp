@@ -33,6 +33,8 @@
 #include "motiongan/motion/dataset.hpp"
 #include "motiongan/motion/kinematics.hpp"
 #include "motiongan/motion/motion.hpp"
+#include "motiongan/motion/position_files.hpp"
+#include "motiongan/motion/position_rotations.hpp"
 #include "motiongan/motion/procedural.hpp"
 #include "motiongan/motion/resampler.hpp"
 #include "motiongan/motion/root_track.hpp"
@@ -64,7 +66,10 @@
 //
 #include "motiongan/eval/drift.hpp"
 #include "motiongan/eval/euler_error.hpp"
+#include "motiongan/eval/joint_angle.hpp"
+#include "motiongan/eval/position_metrics.hpp"
 //
+#include "motiongan/view/heat_map.hpp"
 #include "motiongan/view/line_plot.hpp"
 #include "motiongan/view/player.hpp"
 #include "motiongan/view/pose_strip.hpp"
