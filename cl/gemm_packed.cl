@@ -62,18 +62,18 @@ static inline void multiply_panels_1(global const real* a, uint count, global co
   sums[4] = s4, sums[5] = s5, sums[6] = s6, sums[7] = s7;
 }
 
-// The product with a packed B: one problem, one segment, A not transposed, C not accumulated; the same bits
-// as without packing. Groups: x over panels (panels_per_group each), y over rows.
+// The product with a packed B: one problem, A not transposed; the panels of a segment stand together at its
+// place in B. The same bits as without packing. Groups: x over panels (panels_per_group each), y over rows.
 __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_packed(
     global const real* restrict a, global const real* restrict b, global real* restrict c,
     global const real* restrict bias, global const real* restrict residual, const Numbers g) {
   realv tile[MOST_ROWS * 2];
-  a += g.a_first + g.a_segment[0];
+  a += g.a_first;
   b += g.b_first;
   c += g.c_first;
   bias += g.bias_first;
   residual += g.residual_first;
-  const uint k = g.k, flags = g.flags, n = g.n;
+  const uint k = g.k, flags = g.flags, n = g.n, segments = g.segments;
   const uint row_begin = get_group_id(1) * g.rows_per_group, row_end = min(g.m, row_begin + g.rows_per_group);
   const uint column_begin = get_group_id(0) * g.panels_per_group * COLUMNS;
   const uint column_end = min(n, column_begin + g.panels_per_group * COLUMNS);
@@ -86,7 +86,8 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_packed(
       realv sums[2 * DIRECT];
       global const real* at = c + row_begin * c_row + j;
       for (uint w = 0; w < 2 * DIRECT; ++w) sums[w] = flags & ACCUMULATE ? READ(at + w * VW) : (realv)(0);
-      multiply_panels_1(a + row_begin * a_row, k, from, panel, sums);
+      for (uint s = 0; s < segments; ++s)
+        multiply_panels_1(a + g.a_segment[s] + row_begin * a_row, k, from + g.b_segment[s], panel, sums);
       for (uint w = 0; w < DIRECT; ++w, j += COLUMNS)
         store_tile(c + row_begin * c_row + j, 0, 1, COLUMNS, bias + j,
                    residual + row_begin * residual_row + j, 0, flags, sums + 2 * w);
@@ -97,22 +98,25 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_packed(
     for (uint i = row_begin, rows; i < row_end; i += rows) {
       const uint left = row_end - i;
       rows = left >= most ? most : left >= 8 ? 8 : left >= 4 ? 4 : left >= 2 ? 2 : 1;
-      global const real* rows_of_a = a + i * a_row;
       if (flags & ACCUMULATE)
         load_tile(c + i * c_row + j, c_row, rows, width, tile);
       else
         for (uint e = 0; e < 2 * rows; ++e) tile[e] = 0;
+      for (uint s = 0; s < segments; ++s) {
+        global const real* rows_of_a = a + g.a_segment[s] + i * a_row;
+        global const real* piece = from + g.b_segment[s];
 #define MULTIPLY_PANEL(R) \
-  if (rows == R) multiply_panel_##R(rows_of_a, a_row, k, from, tile);
+  if (rows == R) multiply_panel_##R(rows_of_a, a_row, k, piece, tile);
 #if MOST_ROWS == 12
-      MULTIPLY_PANEL(12)
-      MULTIPLY_PANEL(8)
+        MULTIPLY_PANEL(12)
+        MULTIPLY_PANEL(8)
 #else
-      MULTIPLY_PANEL(6)
+        MULTIPLY_PANEL(6)
 #endif
-      MULTIPLY_PANEL(4)
-      MULTIPLY_PANEL(2)
-      MULTIPLY_PANEL(1)
+        MULTIPLY_PANEL(4)
+        MULTIPLY_PANEL(2)
+        MULTIPLY_PANEL(1)
+      }
       store_tile(c + i * c_row + j, c_row, rows, width, bias + j, residual + i * residual_row + j,
                  residual_row, flags, tile);
     }

@@ -292,7 +292,7 @@ TEST_CASE("a packed B changes no bit, whatever the size, and nothing around C") 
       if (i % 3 == 0) plan.m = 1 + static_cast<std::size_t>(i % 2);
       if (i % 4 == 0) plan.n = 1000 + static_cast<std::size_t>(i);  // enough panels for a row's own way
       if (i % 10 == 0) plan.k = 1600;                               // more than is packed at once
-      plan.a_transposed = false, plan.segments = plan.batch = 1;
+      plan.a_transposed = false, plan.batch = 1;
       Problem problem = make(context, plan, random);
       CAPTURE(concat(problem.call));
       const std::vector<double> start = problem.call.c.to_host<double>();

@@ -39,21 +39,26 @@ inline GemmEngine choose_engine(const Context& context, GemmEngine engine) {
 
 }  // namespace detail
 
-/// B of a product that comes again and again, in the order in which the native engine reads it; empty where
-/// another engine multiplies. Takes m, a and c of the call for unknown. To be made anew when B changes.
+/// B of a product that comes again and again, in the order in which the native engine reads it, segment after
+/// segment; empty where another engine multiplies. Takes m, a and c of the call for unknown. To be made anew
+/// when B changes.
 inline Tensor pack_b(const Context& context, const GemmCall& call,
                      GemmEngine engine = GemmEngine::automatic) {
   if (detail::choose_engine(context, engine) != GemmEngine::native) return {};
-  require(call.segments == 1 && call.batch == 1 && call.n > 0 && call.k > 0 && !call.b.empty(),
-          "pack_b: one B of at least one row and column expected");
-  detail::check_matrix(call, "B", call.b, call.b_offset[0], call.b_transposed ? call.n : call.k,
-                       call.b_transposed ? call.k : call.n, call.b_ld, 0);
-  const std::size_t columns = 2 * context.vector_width(), panels = (call.n + columns - 1) / columns;
-  const std::size_t block = detail::gemm_block(context);
-  Tensor packed(context, {panels, call.k, columns});
-  context.launch("gemm_packed", "gemm_pack", Grid::groups(panels, (call.k + block - 1) / block),
-                 detail::At{call.b, call.b_offset[0]}, call.b_transposed ? std::size_t{1} : call.b_ld,
-                 call.b_transposed ? call.b_ld : std::size_t{1}, call.n, call.k, packed);
+  require(call.segments >= 1 && call.segments <= 4 && call.batch == 1 && call.n > 0 && call.k > 0 &&
+              !call.b.empty(),
+          "pack_b: a B of 1 to 4 segments and at least one row and column expected, no batch");
+  const std::size_t columns = 2 * context.vector_width(), panels = detail::gemm_panels(context, call);
+  const std::size_t block = detail::gemm_block(context), size = panels * call.k * columns;
+  Tensor packed(context, {call.segments * panels, call.k, columns});
+  for (std::size_t s = 0; s < call.segments; ++s) {
+    detail::check_matrix(call, "B", call.b, call.b_offset[s], call.b_transposed ? call.n : call.k,
+                         call.b_transposed ? call.k : call.n, call.b_ld, 0);
+    context.launch("gemm_packed", "gemm_pack", Grid::groups(panels, (call.k + block - 1) / block),
+                   detail::At{call.b, call.b_offset[s]}, call.b_transposed ? std::size_t{1} : call.b_ld,
+                   call.b_transposed ? call.b_ld : std::size_t{1}, call.n, call.k,
+                   detail::At{packed, s * size});
+  }
   return packed;
 }
 

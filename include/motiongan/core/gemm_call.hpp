@@ -24,9 +24,9 @@ struct GemmCall {
   std::size_t c_offset = 0;
   std::size_t batch = 1, a_batch_stride = 0, b_batch_stride = 0, c_batch_stride = 0;
   bool accumulate = false;  ///< start from what C holds
-  /// B once more, as pack_b() returned it for this product's b, b_offset[0], b_ld, b_transposed, n and k; or
-  /// empty. Saves reading B in its own order time after time; changes no bit. Not for several segments,
-  /// batches or a transposed A.
+  /// B once more, as pack_b() returned it for this product's b, b_offset, b_ld, b_transposed, n, k and
+  /// segments; or empty. Saves reading B in its own order time after time; changes no bit. Not for batches or
+  /// a transposed A.
   Tensor b_panels = {};
   /// Applied to the sum in this order: + bias[j], + residual[residual_offset + i * residual_ld + j], ReLU.
   Tensor bias = {}, residual = {};  ///< absent when empty; the same for every problem of the batch
@@ -95,8 +95,7 @@ inline void check_gemm(const Context& context, const GemmCall& g) {
             g.residual.size());
   }
   if (!g.b_panels.empty())
-    require(g.segments == 1 && g.batch == 1 && !g.a_transposed, g,
-            ": a packed B is for one segment, no batch and A not transposed");
+    require(g.batch == 1 && !g.a_transposed, g, ": a packed B is for no batch and A not transposed");
   for (const Tensor* tensor : {&g.a, &g.b, &g.c, &g.bias, &g.residual})
     require(tensor->empty() || tensor->context() == context, g, ": a tensor belongs to another context");
 }

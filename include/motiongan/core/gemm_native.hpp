@@ -6,6 +6,12 @@
 
 namespace motiongan::detail {
 
+/// Panels of two vectors' columns that B is cut into.
+inline std::size_t gemm_panels(const Context& context, const GemmCall& g) {
+  const std::size_t columns = 2 * context.vector_width();
+  return (g.n + columns - 1) / columns;
+}
+
 /// How the native kernel's work is cut: rows and panels (of two vectors' columns) of one work-group, and the
 /// values of p it packs at a time. None of these changes a bit of the result.
 struct GemmSplit {
@@ -13,9 +19,8 @@ struct GemmSplit {
 };
 
 inline GemmSplit split_gemm(const Context& context, const GemmCall& g) {
-  const std::size_t columns = 2 * context.vector_width();
   const std::size_t tile = context.vector_width() * context.real_size() == 64 ? 12 : 6;
-  const std::size_t panels = (g.n + columns - 1) / columns;
+  const std::size_t panels = gemm_panels(context, g);
   // Several groups per core end together even when one core comes late; few rows per group would not pay for
   // packing.
   const std::size_t wanted = 8 * context.device().compute_units;
@@ -33,9 +38,8 @@ inline GemmSplit split_gemm(const Context& context, const GemmCall& g) {
 
 /// The same for a packed B: it costs nothing to cut it finely, but that every group reads its panels anew.
 inline GemmSplit split_packed(const Context& context, const GemmCall& g) {
-  const std::size_t columns = 2 * context.vector_width();
   const std::size_t tile = context.vector_width() * context.real_size() == 64 ? 12 : 6;
-  const std::size_t panels = (g.n + columns - 1) / columns, wanted = 8 * context.device().compute_units;
+  const std::size_t panels = gemm_panels(context, g), wanted = 8 * context.device().compute_units;
   if (g.m == 1 && panels >= wanted) return {1, 4, 1};
   const std::size_t row_groups = (wanted + panels - 1) / panels;
   const std::size_t rows = (g.m + row_groups - 1) / row_groups;
@@ -78,7 +82,11 @@ inline void launch_gemm(const Context& context, const GemmCall& g) {
   to.rows_per_group = narrow(split.rows), to.panels_per_group = narrow(split.panels);
   to.panels_at_once = narrow(split.panels_at_once);
   const std::size_t columns = 2 * context.vector_width() * split.panels;
-  if (is_packed) to.b_first = first(g.b_panels);
+  if (is_packed) {
+    to.b_first = first(g.b_panels);
+    for (std::size_t s = 0; s < g.segments; ++s)
+      to.b_segment[s] = narrow(s * gemm_panels(context, g) * g.k * 2 * context.vector_width());
+  }
   context.launch(is_packed ? "gemm_packed" : "gemm", is_packed ? "gemm_packed" : "gemm",
                  Grid::groups((g.n + columns - 1) / columns, (g.m + split.rows - 1) / split.rows, g.batch),
                  buffer(g.a), buffer(is_packed ? g.b_panels : g.b), g.c.buffer(), buffer(g.bias),

@@ -1,0 +1,70 @@
+// The attention WGAN-GP beside PyTorch: the names and the work of `torch_peer.py speed --models attention`
+// (30 frames, 93 numbers a pose, 4 classes, C = 256). The critic's step makes its fakes and includes Adam; a
+// rollout is 30 seconds of motion, second by second, each the next one's prior.
+//   bench_attention [--json] [--peer torch_peer.py] [--seconds 4]
+// With --peer the same work is timed in PyTorch afterwards, in a process of its own, and the ratio is given.
+#include <motiongan/models/attention_critic.hpp>
+#include <motiongan/models/attention_rollout.hpp>
+#include <motiongan/optim/adam.hpp>
+#include <motiongan/train/wgan_gp.hpp>
+
+#include "steps.hpp"
+
+using namespace motiongan;
+using bench::measure;
+using bench::Measured;
+
+namespace {
+
+constexpr std::size_t frames = 30, dof = 93, classes = 4, seconds_made = 30;
+
+/// One-hot rows, class b % 4 for sample b: [batch, classes].
+Tensor classes_of(const Context& context, std::size_t batch) {
+  std::vector<float> rows(batch * classes, 0);
+  for (std::size_t b = 0; b < batch; ++b) rows[b * classes + b % classes] = 1;
+  return Tensor::from(context, {batch, classes}, rows);
+}
+
+Measured critic_step(const Context& context, const AttentionGenerator& generator, double seconds) {
+  constexpr std::size_t batch = 64;
+  AttentionCritic critic(Initializer(context, 2), {.dof = dof});
+  Adam adam(named_parameters(critic));
+  const Tensor prior = random_normal(context, {.seed = 5}, frames, batch, dof);
+  const Tensor future = random_normal(context, {.seed = 6}, frames, batch, dof);
+  const Var x = Var::constant(prior), y = Var::constant(classes_of(context, batch));
+  const Tensor real = concat_axis({x, Var::constant(future)}, 0).value();
+  std::uint32_t step = 0;
+  return measure(context, "attention_critic_step_b64", seconds, [&] {
+    Tensor fake;
+    {
+      const NoGrad values_only;
+      fake = concat_axis({x, generator(x, y)}, 0).value();
+    }
+    const auto judge = [&](const Var& motion) { return critic(motion); };
+    const CriticLoss loss =
+        critic_loss(judge, judge, real, fake,
+                    random_uniform(context, {.seed = 1, .stream = Stream::mix, .step = ++step}, batch), 10);
+    adam.step(grad(loss.loss, adam.parameters()));
+  });
+}
+
+Measured rollout(const Context& context, const AttentionGenerator& generator, std::size_t batch,
+                 double seconds) {
+  const Tensor prior = random_normal(context, {.seed = 5}, frames, batch, dof);
+  const Tensor y = classes_of(context, batch);
+  AttentionRollout rollout(generator);
+  return measure(context, "attention_rollout_30s_b" + std::to_string(batch), seconds, [&] {
+    Tensor motion = prior;
+    for (std::size_t i = 0; i < seconds_made; ++i) motion = rollout.step(motion, y);
+  });
+}
+
+std::vector<Measured> ours(const Context& context, double seconds) {
+  const AttentionGenerator generator(Initializer(context, 1), {.dof = dof, .classes = classes});
+  return {critic_step(context, generator, seconds), rollout(context, generator, 64, seconds),
+          rollout(context, generator, 1, seconds)};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) { return bench::main("bench_attention", "attention", ours, argc, argv); }
