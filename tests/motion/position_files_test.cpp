@@ -162,29 +162,27 @@ TEST_CASE("CSV that is wrong is refused with the place") {
 
 TEST_CASE("NPY by hand: both types, both byte orders, both index orders, both shapes") {
   const Skeleton s = parse_bone_list("A\t-\nB\tA\n", "s");
-  for (const bool single : {true, false}) {
-    for (const bool big : {true, false}) {
-      const std::string type = std::string(big ? ">" : "<") + (single ? "f4" : "f8");
-      const std::string data = numbers(12, single, big);
-      for (const std::string shape : {"(2, 2, 3)", "(2, 6)"}) {
-        CAPTURE(type);
-        CAPTURE(shape);
-        const PositionClip c = parse_position_npy(
-            npy("{'descr': '" + type + "', 'fortran_order': False, 'shape': " + shape + ", }  \n", data), s,
-            30, "n");
-        CHECK(c.rate == 30);
-        REQUIRE(c.positions.size() == 4);
-        CHECK(c.positions[0] == Vec3{1, 2, 3});
-        CHECK(c.positions[1] == Vec3{4, 5, 6});
-        CHECK(c.positions[3] == Vec3{10, 11, 12});
-        const PositionClip f = parse_position_npy(
-            npy("{\"fortran_order\":True,\"shape\":" + shape + ",\"descr\":\"" + type + "\"}\n", data, 2), s,
-            30, "n");
-        // The frame runs fastest, then the joint, then x, y, z (or the column).
-        CHECK(f.positions[0] == (shape == "(2, 6)" ? Vec3{1, 3, 5} : Vec3{1, 5, 9}));
-        CHECK(f.positions[1] == (shape == "(2, 6)" ? Vec3{7, 9, 11} : Vec3{3, 7, 11}));
-        CHECK(f.positions[2] == (shape == "(2, 6)" ? Vec3{2, 4, 6} : Vec3{2, 6, 10}));
-      }
+  for (const char* type : {"<f4", "<f8", ">f4", ">f8"}) {
+    const std::string data = numbers(12, type[2] == '4', type[0] == '>');
+    for (const bool flat : {false, true}) {
+      const char* const shape = flat ? "(2, 6)" : "(2, 2, 3)";
+      CAPTURE(type);
+      CAPTURE(shape);
+      const PositionClip c = parse_position_npy(
+          npy(concat("{'descr': '", type, "', 'fortran_order': False, 'shape': ", shape, ", }  \n"), data), s,
+          30, "n");
+      CHECK(c.rate == 30);
+      REQUIRE(c.positions.size() == 4);
+      CHECK(c.positions[0] == Vec3{1, 2, 3});
+      CHECK(c.positions[1] == Vec3{4, 5, 6});
+      CHECK(c.positions[3] == Vec3{10, 11, 12});
+      const PositionClip f = parse_position_npy(
+          npy(concat("{\"fortran_order\":True,\"shape\":", shape, ",\"descr\":\"", type, "\"}\n"), data, 2),
+          s, 30, "n");
+      // The frame runs fastest, then the joint, then x, y, z (or the column).
+      CHECK(f.positions[0] == (flat ? Vec3{1, 3, 5} : Vec3{1, 5, 9}));
+      CHECK(f.positions[1] == (flat ? Vec3{7, 9, 11} : Vec3{3, 7, 11}));
+      CHECK(f.positions[2] == (flat ? Vec3{2, 4, 6} : Vec3{2, 6, 10}));
     }
   }
 }

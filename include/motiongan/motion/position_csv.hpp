@@ -5,18 +5,15 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/motion/bone_list.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/motion/position_clip.hpp"
-#include "motiongan/motion/text_file.hpp"
 
 namespace motiongan::motion {
 

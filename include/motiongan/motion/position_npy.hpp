@@ -1,12 +1,10 @@
 // Joint positions as NumPy's .npy arrays.
 #pragma once
-#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <string_view>
 #include <system_error>
