@@ -1,0 +1,112 @@
+// Whole clips of an attention model: by a schedule of classes, or made again from a clip's first second (SPEC
+// 5).
+#pragma once
+#include "motiongan/sample/action_schedule.hpp"
+#include "motiongan/sample/action_stream.hpp"
+
+namespace motiongan {
+
+struct ActionGenerateOptions {
+  bool with_prior = true;          ///< whether the clips begin with the T frames that were given
+  std::uint64_t seed = 1;          ///< of the noise, where the model has some
+  std::uint32_t first_sample = 0;  ///< number of the first clip's noise; the others count on
+};
+
+/// One clip for each prior, all of the same schedule. The model makes T frames at once; where a piece ends
+/// inside them, the frames of the piece are kept and the next piece goes on from the last T frames kept, so
+/// that a class changes exactly where the schedule says. Ids are those of the priors.
+inline std::vector<motion::PositionClip> generate(const AttentionGan& model,
+                                                  std::span<const ActionPrior> priors,
+                                                  const ActionSchedule& schedule,
+                                                  const ActionGenerateOptions& options = {}) {
+  require(frames_of(schedule) > 0, "a schedule without frames was asked for");
+  ActionStream stream(model);
+  std::vector<ActionCharacterOptions> characters;
+  std::vector<motion::PositionClip> clips;
+  for (std::size_t i = 0; i < priors.size(); ++i) {
+    const ActionPrior& prior = priors[i];
+    characters.push_back({.prior = &prior,
+                          .label = schedule.front().label,
+                          .seed = options.seed,
+                          .sample = options.first_sample + static_cast<std::uint32_t>(i)});
+    clips.push_back({prior.id, prior.skeleton, model.format().rate, 0, {}});
+    if (options.with_prior)
+      clips.back().frames = model.format().frames, clips.back().positions = prior.positions;
+  }
+  const std::vector<ActionStream::Id> ids = stream.add(characters);
+  for (const ActionPiece& piece : schedule) {
+    for (const ActionStream::Id id : ids) stream.set_class(id, piece.label);
+    for (std::size_t left = piece.frames; left > 0;) {
+      const std::size_t frames = std::min(left, model.format().frames);
+      stream.step(frames);
+      left -= frames;
+      for (std::size_t i = 0; i < ids.size(); ++i) {
+        const motion::PositionClip made = stream.clip(ids[i]);
+        clips[i].frames += made.frames;
+        clips[i].positions.insert(clips[i].positions.end(), made.positions.begin(), made.positions.end());
+      }
+    }
+  }
+  return clips;
+}
+
+/// What becomes of a clip when all after its first T frames is made by the model.
+struct SyntheticClip {
+  motion::PositionClip clip;  ///< as long as the real one, its first T frames those of the real one
+  std::size_t label = 0;
+};
+
+/// A synthetic clip for each of `clips` of `data`: same prior, same class, same length (SPEC 5: synthetic
+/// data). Without root channels in the model's format the body goes where the real one went. Error where the
+/// model lacks a class of the data, or has another skeleton.
+inline std::vector<SyntheticClip> synthesise(const AttentionGan& model, const motion::ActionDataset& data,
+                                             std::span<const motion::ActionClip> clips,
+                                             std::uint64_t seed = 1, std::uint32_t first_sample = 0) {
+  const motion::PositionFormat& format = model.format();
+  const std::size_t frames = format.frames;
+  ActionStream stream(model);
+  std::map<ActionStream::Id, std::size_t> numbers;  // of those still under way
+  std::vector<SyntheticClip> out;
+  std::vector<std::size_t> lengths;
+  std::vector<std::vector<motion::RootTrack>> places;
+  for (std::size_t i = 0; i < clips.size(); ++i) {
+    const motion::PositionClip real = clip_of(data, clips[i]);
+    const ActionPrior prior = prior_from(real, format);
+    const std::size_t label = format.class_index(data.format.classes[clips[i].label]);
+    const auto at_rate =
+        std::abs(real.rate / format.rate - 1) < 1e-6 ? real : motion::resample(real, format.rate);
+    out.push_back({{real.id, real.skeleton, format.rate, frames, prior.positions}, label});
+    lengths.push_back(at_rate.frames);
+    places.push_back(format.layout.root_track() ? std::vector<motion::RootTrack>{}
+                                                : format.layout.places(at_rate.positions));
+    if (lengths.back() > frames)
+      numbers[stream.add({.prior = &prior,
+                          .label = label,
+                          .seed = seed,
+                          .sample = first_sample + static_cast<std::uint32_t>(i)})] = i;
+  }
+  while (!numbers.empty()) {
+    stream.step();
+    for (auto at = numbers.begin(); at != numbers.end();) {
+      const std::size_t i = at->second;
+      motion::PositionClip& clip = out[i].clip;
+      const std::size_t kept = std::min(frames, lengths[i] - clip.frames);
+      const std::vector<motion::Vec3> made =
+          places[i].empty() ? stream.clip(at->first).positions
+                            : format.restore(stream.poses(at->first).first(kept * format.dof()),
+                                             std::span(places[i]).subspan(clip.frames, kept));
+      clip.positions.insert(clip.positions.end(), made.begin(),
+                            made.begin() + static_cast<std::ptrdiff_t>(kept * clip.skeleton.size()));
+      clip.frames += kept;
+      if (clip.frames < lengths[i]) {
+        ++at;
+        continue;
+      }
+      stream.remove(at->first);
+      at = numbers.erase(at);
+    }
+  }
+  return out;
+}
+
+}  // namespace motiongan

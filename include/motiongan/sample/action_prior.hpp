@@ -1,0 +1,77 @@
+// A second of motion that an attention model goes on from, taken out of a clip (SPEC 5).
+#pragma once
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "motiongan/motion/action_dataset.hpp"
+#include "motiongan/motion/action_source.hpp"
+#include "motiongan/motion/position_clip.hpp"
+#include "motiongan/motion/position_format.hpp"
+
+namespace motiongan {
+
+/// What a character has done in the T frames before it moves on by itself, at the format's rate.
+struct ActionPrior {
+  std::string id;                         ///< of the clip
+  std::size_t first_frame = 0;            ///< in the clip, at the format's rate
+  motion::Skeleton skeleton;              ///< with the clip's own bone lengths
+  std::vector<float> poses;               ///< [T, dof], normalised
+  std::vector<motion::Vec3> positions;    ///< [T, joints], in the world
+  std::vector<motion::RootTrack> places;  ///< [T], where the root stood
+};
+
+/// The clip of a BVH file's motion as the format has it: at its rate, from its root joint on.
+inline motion::PositionClip clip_for(const motion::Motion& motion, const motion::PositionFormat& format,
+                                     const std::string& id) {
+  const int root = motion.skeleton.find(format.skeleton().joints.front().name);
+  require(root >= 0, "the clip ", id, " has no joint '", format.skeleton().joints.front().name,
+          "', the root of the model's skeleton");
+  return motion::positions_of(motion, id, format.rate, root);
+}
+
+/// The T frames of `clip` from `first_frame` on, counted at the format's rate; a clip of another rate is
+/// brought to that. Error for another skeleton, naming the joints, and where the clip ends too soon.
+inline ActionPrior prior_from(const motion::PositionClip& clip, const motion::PositionFormat& format,
+                              std::size_t first_frame = 0) {
+  format.require_skeleton(clip.skeleton, "the prior " + clip.id);
+  const bool same_rate = std::abs(clip.rate / format.rate - 1) < 1e-6;
+  const motion::PositionClip own = same_rate ? motion::PositionClip{} : motion::resample(clip, format.rate);
+  const motion::PositionClip& at_rate = same_rate ? clip : own;
+  const std::size_t needed = format.frames, joints = clip.skeleton.size(), end = first_frame + needed;
+  const auto seconds = [&](std::size_t frames) {
+    return motion::action_dataset_detail::seconds_text(static_cast<double>(frames) / format.rate);
+  };
+  const std::size_t left = at_rate.frames - std::min(at_rate.frames, first_frame);
+  require(first_frame < at_rate.frames && left >= needed, "the prior ", clip.id, " has ", left, " frames (",
+          seconds(left), ") from frame ", first_frame, " (", seconds(first_frame), ") on, at ", format.rate,
+          " per second; ", needed, " frames (", seconds(needed),
+          ") are needed: give a clip of at least that, ", "or start earlier");
+  // Steps count from the frame before, so the poses are those of the clip, not of a clip that begins here.
+  const std::span<const motion::Vec3> before(at_rate.positions.data(), end * joints);
+  ActionPrior out{clip.id, first_frame, clip.skeleton, {}, {}, {}};
+  std::vector<motion::RootTrack> places;
+  try {
+    places = format.layout.places(before);
+  } catch (const Error& error) {
+    throw Error("the prior ", clip.id, ": ", error.what());
+  }
+  const std::vector<float> poses = format.normalizer.normalize<float>(format.layout.encode(before, places));
+  const auto tail = [&](const auto& all, std::size_t width) {
+    return std::decay_t<decltype(all)>(all.end() - static_cast<std::ptrdiff_t>(needed * width), all.end());
+  };
+  out.poses = tail(poses, format.dof());
+  out.places = tail(places, 1);
+  out.positions.assign(before.end() - static_cast<std::ptrdiff_t>(needed * joints), before.end());
+  return out;
+}
+
+/// The whole clip of a data set, as positions in the world.
+inline motion::PositionClip clip_of(const motion::ActionDataset& data, const motion::ActionClip& clip) {
+  return {clip.id, clip.skeleton, data.format.rate, clip.frames,
+          data.format.restore(clip.poses, clip.places)};
+}
+
+}  // namespace motiongan

@@ -1,0 +1,205 @@
+// Characters whose class may change, second after second (SPEC 5: generation).
+#pragma once
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "motiongan/models/attention_gan.hpp"
+#include "motiongan/models/attention_rollout.hpp"
+#include "motiongan/sample/action_prior.hpp"
+
+namespace motiongan {
+
+struct ActionCharacterOptions {
+  const ActionPrior* prior = nullptr;  ///< what it has done so far; only needed until it is added
+  std::size_t label = 0;               ///< number of its class, see PositionFormat::class_index()
+  std::uint64_t seed = 1;              ///< of the noise, where the model has some
+  std::uint32_t sample = 0;            ///< another sample of a seed is another motion, where there is noise
+};
+
+/// Any number of characters that come and go, each with its own prior, class, noise and place in the world.
+/// The model makes T frames (a second) at once from the T before. A character's motion does not depend on
+/// which others there are, bit for bit on the native engine of gemm(); where steps are cut shorter than T it
+/// does depend on where, for the model then goes on from what was kept.
+///
+/// With root channels in the format, steps and turns are added up from where the prior ended, so that
+/// characters travel; without, they stand where it ended.
+///
+///     ActionStream stream(model);
+///     const auto id = stream.add({.prior = &prior, .label = model.format().class_index("walk")});
+///     stream.step();             // a second of all
+///     draw(stream.clip(id));     // T frames of positions in the world
+///     stream.set_class(id, "run");
+class ActionStream {
+ public:
+  using Id = std::size_t;
+
+  /// For attention generator and LSTM baseline alike. The weights are taken as they are now; the model must
+  /// outlive the stream. Samples beyond `most_at_once` take a batch of their own.
+  explicit ActionStream(const AttentionGan& model, std::size_t most_at_once = 256)
+      : model_(model), format_(model.format()), most_at_once_(most_at_once) {
+    require(most_at_once > 0, "an ActionStream of batches of 0 characters was asked for");
+    if (!model.is_baseline()) rollout_.emplace(model.generator());
+  }
+  ActionStream(const ActionStream&) = delete;
+  ActionStream& operator=(const ActionStream&) = delete;
+
+  std::size_t size() const { return characters_.size(); }
+  const motion::PositionFormat& format() const { return format_; }
+
+  /// Adds a character; it moves with the next step. Error without a prior of T frames, and for an unknown
+  /// class.
+  Id add(const ActionCharacterOptions& options) {
+    require(options.prior != nullptr, "a character needs a prior: ", format_.frames,
+            " frames of motion to go on from (prior_from)");
+    const ActionPrior& prior = *options.prior;
+    require(prior.poses.size() == format_.frames * format_.dof() && !prior.places.empty(), "the prior ",
+            prior.id, " has ", prior.poses.size(), " numbers, expected ", format_.frames, " frames of ",
+            format_.dof());
+    check_class(options.label);
+    characters_.emplace(next_id_, Character{.id = prior.id,
+                                            .skeleton = prior.skeleton,
+                                            .window = prior.poses,
+                                            .label = options.label,
+                                            .seed = options.seed,
+                                            .sample = options.sample,
+                                            .track = prior.places.back()});
+    return next_id_++;
+  }
+  std::vector<Id> add(std::span<const ActionCharacterOptions> options) {
+    std::vector<Id> ids;
+    try {
+      for (const ActionCharacterOptions& o : options) ids.push_back(add(o));
+    } catch (...) {
+      for (const Id id : ids) remove(id);
+      throw;
+    }
+    return ids;
+  }
+
+  /// Takes a character out. Error where there is none of that id, as for all that takes an id.
+  void remove(Id id) {
+    character(id);
+    characters_.erase(id);
+  }
+
+  /// What it does from the next step on.
+  void set_class(Id id, std::size_t label) {
+    check_class(label);
+    character(id).label = label;
+  }
+  void set_class(Id id, std::string_view name) { character(id).label = format_.class_index(name); }
+  const std::string& class_of(Id id) const { return format_.classes[character(id).label]; }
+
+  /// Where its root stands after the last step; may be changed, to put it somewhere else.
+  motion::RootTrack& track(Id id) { return character(id).track; }
+  const motion::RootTrack& track(Id id) const { return character(id).track; }
+
+  /// Moves all characters on by a second, T frames, or by the first `frames` of it (1 .. T; 0: all).
+  void step(std::size_t frames = 0) {
+    if (frames == 0) frames = format_.frames;
+    require(frames <= format_.frames, "a step of ", frames, " frames was asked for, expected at most ",
+            format_.frames, ": the model makes so many at once");
+    std::vector<Character*> batch;
+    for (auto& entry : characters_) {
+      batch.push_back(&entry.second);
+      if (batch.size() == most_at_once_) move_on(batch, frames), batch.clear();
+    }
+    if (!batch.empty()) move_on(batch, frames);
+  }
+
+  /// The frames of the last step as the model made them, [frames, dof], normalised; valid until the next
+  /// step. Error for a character that was added after it.
+  std::span<const float> poses(Id id) const {
+    const Character& c = character(id);
+    require(c.made > 0, "character ", id, " has not moved since it was added; call step()");
+    return std::span(c.window).last(c.made * format_.dof());
+  }
+
+  /// The same in the world, with the bones of its prior.
+  motion::PositionClip clip(Id id) const {
+    const Character& c = character(id);
+    motion::RootTrack track = c.before;
+    return {c.id, c.skeleton, format_.rate, c.made, format_.decode(poses(id), &track)};
+  }
+
+ private:
+  struct Character {
+    std::string id;
+    motion::Skeleton skeleton;
+    std::vector<float> window;  // the last T frames, [T, dof]
+    std::size_t label = 0;
+    std::uint64_t seed = 1;
+    std::uint32_t sample = 0, steps = 0;
+    motion::RootTrack track = {}, before = {};  // after and before the last step
+    std::size_t made = 0;                       // frames of the last step
+  };
+
+  void check_class(std::size_t label) const {
+    require(label < format_.classes.size(), "class number ", label, " was asked for, the model has ",
+            format_.classes.size(), " classes");
+  }
+  const Character& character(Id id) const {
+    const auto found = characters_.find(id);
+    require(found != characters_.end(), "there is no character ", id, " in the stream");
+    return found->second;
+  }
+  Character& character(Id id) { return const_cast<Character&>(std::as_const(*this).character(id)); }
+
+  /// The T frames [T, B, dof] after the prior [T, B, dof].
+  Tensor make(const Tensor& prior, const Tensor& classes, const Tensor& noise) {
+    if (rollout_) return rollout_->step(prior, classes, noise);
+    const NoGrad values_only;
+    return model_.baseline()(Var::constant(prior), Var::constant(classes), format_.frames).value();
+  }
+
+  void move_on(std::span<Character* const> batch, std::size_t frames) {
+    const Context& context = model_.context();
+    const std::size_t count = batch.size(), dof = format_.dof(), all = format_.frames;
+    std::vector<float> priors(all * count * dof);
+    std::vector<std::size_t> labels;
+    std::vector<cl_int> keys;
+    for (std::size_t b = 0; b < count; ++b) {
+      const Character& c = *batch[b];
+      for (std::size_t f = 0; f < all; ++f)
+        std::copy_n(&c.window[f * dof], dof, &priors[(f * count + b) * dof]);
+      labels.push_back(c.label);
+      keys.insert(keys.end(), {static_cast<cl_int>(static_cast<std::uint32_t>(c.seed)),
+                               static_cast<cl_int>(static_cast<std::uint32_t>(c.seed >> 32)),
+                               static_cast<cl_int>(c.sample), static_cast<cl_int>(c.steps)});
+    }
+    Tensor noise;
+    if (const std::size_t numbers = model_.options().noise_dim; numbers > 0) {
+      Tensor each(context, {1, count, numbers});
+      fill_normal_each(each, Stream::noise, 0, Indices(context, keys));
+      noise = each.reshape({count, numbers});
+    }
+    const std::vector<float> made = make(Tensor::from(context, {all, count, dof}, priors),
+                                         one_hot(context, labels, format_.classes.size()), noise)
+                                        .to_host();
+    for (std::size_t b = 0; b < count; ++b) {
+      Character& c = *batch[b];
+      c.window.erase(c.window.begin(), c.window.begin() + static_cast<std::ptrdiff_t>(frames * dof));
+      for (std::size_t f = 0; f < frames; ++f) {
+        const float* const row = &made[(f * count + b) * dof];
+        c.window.insert(c.window.end(), row, row + dof);
+      }
+      c.made = frames;
+      ++c.steps;
+      c.before = c.track;
+      format_.decode(std::span<const float>(c.window).last(frames * dof), &c.track);
+    }
+  }
+
+  const AttentionGan& model_;
+  motion::PositionFormat format_;
+  std::size_t most_at_once_;
+  std::optional<AttentionRollout> rollout_;  // none for the baseline
+  std::map<Id, Character> characters_;
+  Id next_id_ = 0;
+};
+
+}  // namespace motiongan
