@@ -56,8 +56,8 @@ class AttentionGan {
     std::visit([&](auto& generator) { generator.list_parameters(list); }, generator_);
   }
 
-  /// The T frames [T, B, dof] that follow a normalised prior [T, B, dof] of class [B, Y] (one-hot); `key` names the
-  /// noise where the model has some.
+  /// The T frames [T, B, dof] that follow a normalised prior [T, B, dof] of class [B, Y] (one-hot); `key`
+  /// names the noise where the model has some.
   Var make(const Var& prior, const Var& classes, const RandomKey& key = {}) const {
     if (is_baseline()) return baseline()(prior, classes, format_.frames);
     return generator()(prior, classes, noise(prior.dim(1), key));
@@ -113,8 +113,8 @@ class AttentionGan {
     require(file.metadata.contains("motiongan_model"), where,
             ": not a motiongan model (no \"motiongan_model\" in its metadata)");
     const std::string& name = file.metadata.at("motiongan_model");
-    require(describes(file), where, ": holds a model called \"", name, "\", expected ", attention_name, " or ",
-            lstm_name);
+    require(describes(file), where, ": holds a model called \"", name, "\", expected ", attention_name,
+            " or ", lstm_name);
     try {
       const auto options = nlohmann::json::parse(file.metadata.at("options"));
       AttentionGanOptions read;
@@ -126,8 +126,8 @@ class AttentionGan {
       }
       require(read.hidden > 0 && read.hidden <= 65536 && read.noise_dim <= 65536, "hidden ", read.hidden,
               " or noise_dim ", read.noise_dim, " is out of range");
-      return AttentionGan(context,
-                          io::position_format_from_json(nlohmann::json::parse(file.metadata.at("format"))), read);
+      return AttentionGan(
+          context, io::position_format_from_json(nlohmann::json::parse(file.metadata.at("format"))), read);
     } catch (const Error& error) {
       throw Error(where, ": ", error.what());
     } catch (const std::exception& error) {  // nlohmann's own, and missing keys
@@ -150,7 +150,8 @@ class AttentionGan {
                                        .hidden = options.hidden,
                                        .noise_dim = options.noise_dim,
                                        .attention = options.attention});
-    require(options.noise_dim == 0, "the LSTM baseline takes no noise, noise_dim ", options.noise_dim, " was asked");
+    require(options.noise_dim == 0, "the LSTM baseline takes no noise, noise_dim ", options.noise_dim,
+            " was asked");
     return LstmBaseline(init,
                         {.dof = format.dof(), .classes = format.classes.size(), .hidden = options.hidden});
   }

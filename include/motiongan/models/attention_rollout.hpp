@@ -47,9 +47,11 @@ class AttentionRollout {
                     noise.empty() ? classes : noise, detail::At{rows_, batch_ * encode_.k}, rows, batch_,
                     options_.dof, options_.classes, noise_count);
     gemm(context_, encode_);
-    residual_block(0);
+    gemm(context_, first_[0]);
+    gemm(context_, second_[0]);
     if (inner_ > 0) attend();
-    residual_block(1);
+    gemm(context_, first_[1]);
+    gemm(context_, second_[1]);
     decode_.c = Tensor(context_, {frames_, batch_, options_.dof});
     gemm(context_, decode_);
     return std::exchange(decode_.c, {});
@@ -103,6 +105,11 @@ class AttentionRollout {
       call.residual = residual, call.residual_ld = hidden;
     };
     place(encode_, rows_, state_, 0);
+    const auto rectify = [&](GemmCall& call) {
+      call.rectified = rectified_, call.rectified_offset = batch * hidden;
+    };
+    rectify(encode_);
+    rectify(inner_ > 0 ? out_ : second_[0]);
     for (GemmCall& call : first_) place(call, rectified_, between_, batch * hidden);
     place(second_[0], between_, other_, 0);
     add(second_[0], state_);
@@ -121,15 +128,6 @@ class AttentionRollout {
     add(second_[1], inner_ > 0 ? state_ : other_);
     place(decode_, rectified_, {}, 0);
     frames_ = frames, batch_ = batch;
-  }
-
-  /// From state_ to other_ (block 0), or from the attention's result to rectified_ (block 1).
-  void residual_block(std::size_t i) {
-    const Tensor& h = second_[i].residual;
-    context_.launch("elementwise", "leaky_relu", detail::vector_grid(h), h,
-                    detail::At{rectified_, batch_ * options_.hidden}, h.size(), Real{0}, Real{0});
-    gemm(context_, first_[i]);
-    gemm(context_, second_[i]);
   }
 
   void attend() {

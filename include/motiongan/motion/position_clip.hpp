@@ -7,8 +7,8 @@
 
 namespace motiongan::motion {
 
-/// What forward kinematics makes of a Motion, or a file of positions holds. Of the skeleton, names, parents and
-/// offsets count; offsets are those of the file, or mean bone vectors where the file has only positions.
+/// What forward kinematics makes of a Motion, or a file of positions holds. Of the skeleton, names, parents
+/// and offsets count; offsets are those of the file, or mean bone vectors where the file has only positions.
 struct PositionClip {
   std::string id;
   Skeleton skeleton;

@@ -1,4 +1,5 @@
-// Batches of labelled windows for the second paper's training, drawn on the device from clips that stay there.
+// Batches of labelled windows for the second paper's training, drawn on the device from clips that stay
+// there.
 #pragma once
 #include "motiongan/core/random.hpp"
 #include "motiongan/motion/action_dataset.hpp"
@@ -14,20 +15,24 @@ struct ActionBatch {
   Tensor classes;                   ///< one-hot, [B, Y]
 };
 
-/// All clips of one part of a data set in one device buffer. A batch is a function of (seed, step) alone, so a
-/// resumed run draws what an unbroken one would have drawn.
+/// All clips of one part of a data set in one device buffer. A batch is a function of (seed, step) alone, so
+/// a resumed run draws what an unbroken one would have drawn.
 class ActionSampler {
  public:
   /// `balanced`: draw the class first, so that classes of few clips are seen as often as others.
   ActionSampler(const Context& context, const motion::ActionDataset& data,
                 const std::vector<motion::ActionClip>& clips, bool balanced = true)
-      : context_(context), frames_(data.format.frames), classes_(data.format.classes.size()), balanced_(balanced) {
+      : context_(context),
+        frames_(data.format.frames),
+        classes_(data.format.classes.size()),
+        balanced_(balanced) {
     require(!clips.empty(), "there are no clips to draw windows from");
     const std::size_t dof = data.format.dof();
     std::size_t rows = 0;
     std::vector<std::vector<std::size_t>> by_class(classes_);
     for (const motion::ActionClip& clip : clips) {
-      require(clip.label < classes_, "clip '", clip.id, "' has label ", clip.label, ", expected less than ", classes_);
+      require(clip.label < classes_, "clip '", clip.id, "' has label ", clip.label, ", expected less than ",
+              classes_);
       by_class[clip.label].push_back(clips_.size());
       clips_.push_back({rows, data.starts(clip), clip.label});
       rows += clip.frames;

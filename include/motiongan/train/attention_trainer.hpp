@@ -1,5 +1,5 @@
-// Training the attention WGAN-GP (Malek-Podjaski & Deligianni; SPEC 5): critic, classifier and generator, each
-// through the others but without a gradient for them.
+// Training the attention WGAN-GP (Malek-Podjaski & Deligianni; SPEC 5): critic, classifier and generator,
+// each through the others but without a gradient for them.
 #pragma once
 #include "motiongan/models/attention_classifier.hpp"
 #include "motiongan/models/attention_critic.hpp"
@@ -17,16 +17,16 @@ struct AttentionTrainOptions {
   std::size_t critic_steps = 5;     ///< n_critic
   std::size_t generator_steps = 1;  ///< n_generator
   std::size_t batch = 64;
-  std::size_t rollouts = 2;      ///< n_ar: how many times the generator goes on from its own output
-  double lambda_gp = 10;         ///< weight of the gradient penalty
-  double weight_clip = 0;        ///< above 0: clip the critic's weights there, instead of the penalty
-  double skeleton_weight = 1;    ///< of L_skel; 0: without
-  double blend_weight = 1;       ///< of L_blend; 0: without
-  double class_weight = 1;       ///< of L_class; 0: without
-  bool skeleton_vectors = false; ///< L_skel compares bone vectors, as eq. 9 is printed, not their lengths
-  bool critic_classes = false;   ///< tell the critic the class
-  bool balanced = true;          ///< draw classes alike, however many clips they have
-  AdamOptions adam{};            ///< of all networks
+  std::size_t rollouts = 2;       ///< n_ar: how many times the generator goes on from its own output
+  double lambda_gp = 10;          ///< weight of the gradient penalty
+  double weight_clip = 0;         ///< above 0: clip the critic's weights there, instead of the penalty
+  double skeleton_weight = 1;     ///< of L_skel; 0: without
+  double blend_weight = 1;        ///< of L_blend; 0: without
+  double class_weight = 1;        ///< of L_class; 0: without
+  bool skeleton_vectors = false;  ///< L_skel compares bone vectors, as eq. 9 is printed, not their lengths
+  bool critic_classes = false;    ///< tell the critic the class
+  bool balanced = true;           ///< draw classes alike, however many clips they have
+  AdamOptions adam{};             ///< of all networks
   std::uint64_t seed = 1;
 };
 
@@ -56,19 +56,18 @@ struct AttentionLosses {
   double wasserstein = 0;  ///< mean D(real) - mean D(fake) of the last critic step
   double penalty = 0;      ///< mean (|gradient| - 1)^2; 0 where weights are clipped instead
   double adversarial = 0;  ///< -mean D(fake) of the generator's step
-  double skeleton = 0, blend = 0, classification = 0;  ///< the generator's, unweighted; 0 where their weight is
-  double classifier = 0;                               ///< the classifier's own loss on real motion
-  double accuracy = 0;                                 ///< share of that batch that it got right
-  double gamma = 0;                                    ///< of the generator's attention; 0 without
+  double skeleton = 0, blend = 0,
+         classification = 0;  ///< the generator's, unweighted; 0 where their weight is
+  double classifier = 0;      ///< the classifier's own loss on real motion
+  double accuracy = 0;        ///< share of that batch that it got right
+  double gamma = 0;           ///< of the generator's attention; 0 without
 };
 
 /// As they stand in the log.
 inline std::vector<LossColumn> columns(const AttentionLosses& l) {
-  return {{"wasserstein", l.wasserstein}, {"penalty", l.penalty},
-          {"adversarial", l.adversarial}, {"skeleton", l.skeleton},
-          {"blend", l.blend},             {"classification", l.classification},
-          {"classifier", l.classifier},   {"accuracy", l.accuracy},
-          {"gamma", l.gamma}};
+  return {{"wasserstein", l.wasserstein}, {"penalty", l.penalty},   {"adversarial", l.adversarial},
+          {"skeleton", l.skeleton},       {"blend", l.blend},       {"classification", l.classification},
+          {"classifier", l.classifier},   {"accuracy", l.accuracy}, {"gamma", l.gamma}};
 }
 
 /// Share of rows of logits [B, Y] whose largest number is at the label.
@@ -78,8 +77,8 @@ inline double accuracy_of(const Tensor& logits, std::span<const std::size_t> lab
   std::size_t right = 0;
   for (std::size_t b = 0; b < labels.size(); ++b) {
     const auto row = values.begin() + static_cast<std::ptrdiff_t>(b * classes);
-    right += static_cast<std::size_t>(std::max_element(row, row + static_cast<std::ptrdiff_t>(classes)) - row) ==
-             labels[b];
+    right += static_cast<std::size_t>(std::max_element(row, row + static_cast<std::ptrdiff_t>(classes)) -
+                                      row) == labels[b];
   }
   return static_cast<double>(right) / static_cast<double>(labels.size());
 }
@@ -87,7 +86,8 @@ inline double accuracy_of(const Tensor& logits, std::span<const std::size_t> lab
 /// Trains an AttentionGan on a data set. The three kinds of steps are also callable by themselves.
 class AttentionTrainer {
  public:
-  AttentionTrainer(AttentionGan& model, const motion::ActionDataset& data, const AttentionTrainOptions& options)
+  AttentionTrainer(AttentionGan& model, const motion::ActionDataset& data,
+                   const AttentionTrainOptions& options)
       : model_(model),
         options_(checked(options)),
         windows_(model.context(), data, data.train, options.balanced),
@@ -111,8 +111,9 @@ class AttentionTrainer {
             "the data set (", data.format.dof(), " dof, ", data.format.frames, " frames, ",
             data.format.classes.size(), " classes) does not fit the model (", model.format().dof(), ", ",
             model.format().frames, ", ", model.format().classes.size(), ")");
-    require((options.iterations + 1) * steps_each() < (std::size_t{1} << 24), options.iterations, " iterations of ",
-            steps_each(), " steps are more than the random numbers' counter holds (2^24 steps)");
+    require((options.iterations + 1) * steps_each() < (std::size_t{1} << 24), options.iterations,
+            " iterations of ", steps_each(),
+            " steps are more than the random numbers' counter holds (2^24 steps)");
   }
 
   AttentionGan& model() { return model_; }
@@ -136,8 +137,8 @@ class AttentionTrainer {
     ++iteration_;
   }
 
-  /// One update of the critic; `step` numbers the step's random numbers. Its fakes are what rollout r made of what
-  /// rollout r - 1 had made, r uniform in 1..rollouts, so that later rollouts are not strange to it.
+  /// One update of the critic; `step` numbers the step's random numbers. Its fakes are what rollout r made of
+  /// what rollout r - 1 had made, r uniform in 1..rollouts, so that later rollouts are not strange to it.
   void critic_step(std::uint32_t step) {
     const RandomKey key{.seed = options_.seed, .step = step};
     const ActionBatch batch = windows_.draw(options_.seed, step, options_.batch);
@@ -162,7 +163,8 @@ class AttentionTrainer {
       loss.loss = -loss.wasserstein;
     } else {
       loss = critic_loss(judge_pairs, judge, batch.motion, future.value(),
-                         random_uniform(model_.context(), key.with(Stream::mix), options_.batch), options_.lambda_gp);
+                         random_uniform(model_.context(), key.with(Stream::mix), options_.batch),
+                         options_.lambda_gp);
     }
     critic_adam_.step(grad(loss.loss, critic_adam_.parameters()));
     if (options_.weight_clip > 0) critic_adam_.clip(options_.weight_clip);
@@ -186,7 +188,8 @@ class AttentionTrainer {
     Var total, adversarial, skeleton, blend, classification;
   };
 
-  /// What the generator's step minimises; `step` numbers the random numbers. Critic and classifier are frozen.
+  /// What the generator's step minimises; `step` numbers the random numbers. Critic and classifier are
+  /// frozen.
   GeneratorLoss generator_loss_of(const ActionBatch& batch, std::uint32_t step) {
     const Frozen critic_fixed(named_parameters(critic_)), classifier_fixed(named_parameters(classifier_));
     const RandomKey key{.seed = options_.seed, .step = step};
@@ -200,7 +203,8 @@ class AttentionTrainer {
     const auto repeated = [&](const Var& x, std::size_t axis) {
       return concat_axis(std::vector<Var>(options_.rollouts, x), axis);
     };
-    const Var fed = concat_axis(priors, 1), made = concat_axis(futures, 1), all_classes = repeated(classes, 0);
+    const Var fed = concat_axis(priors, 1), made = concat_axis(futures, 1),
+              all_classes = repeated(classes, 0);
     GeneratorLoss loss;
     loss.adversarial = generator_loss(judged(concat_axis({fed, made}, 0), all_classes));
     loss.total = loss.adversarial;

@@ -16,12 +16,8 @@ struct BaselineTrainOptions {
 
 /// What a checkpoint keeps of them: all but `iterations`, which a resumed run may have more of.
 inline nlohmann::json to_json(const BaselineTrainOptions& o) {
-  return {{"batch", o.batch},
-          {"balanced", o.balanced},
-          {"learning_rate", o.adam.learning_rate},
-          {"beta1", o.adam.beta1},
-          {"beta2", o.adam.beta2},
-          {"epsilon", o.adam.epsilon},
+  return {{"batch", o.batch},      {"balanced", o.balanced}, {"learning_rate", o.adam.learning_rate},
+          {"beta1", o.adam.beta1}, {"beta2", o.adam.beta2},  {"epsilon", o.adam.epsilon},
           {"seed", o.seed}};
 }
 

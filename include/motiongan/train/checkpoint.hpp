@@ -119,9 +119,11 @@ void load_checkpoint(Trainer& trainer, const std::filesystem::path& path) {
   std::vector<NamedParameter> all;
   std::vector<std::size_t> steps;
   for (const TrainedPart& part : parts) {
-    for (const NamedParameter& p : part.parameters) all.push_back({part.name + "." + p.name, p.value, p.layout});
+    for (const NamedParameter& p : part.parameters)
+      all.push_back({part.name + "." + p.name, p.value, p.layout});
     all.push_back({"adam." + part.name + ".mean", &moments.emplace_back(Var::constant(part.adam->mean()))});
-    all.push_back({"adam." + part.name + ".square", &moments.emplace_back(Var::constant(part.adam->square()))});
+    all.push_back(
+        {"adam." + part.name + ".square", &moments.emplace_back(Var::constant(part.adam->square()))});
     steps.push_back(detail::checkpoint_number(file, concat("adam.", part.name, ".steps"), where));
   }
   io::load_parameters(all, file, where);

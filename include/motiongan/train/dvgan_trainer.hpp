@@ -51,9 +51,8 @@ struct DvganLosses {
 
 /// As they stand in the log.
 inline std::vector<LossColumn> columns(const DvganLosses& losses) {
-  return {{"wasserstein", losses.wasserstein},
-          {"penalty", losses.penalty},
-          {"generator_loss", losses.generator}};
+  return {
+      {"wasserstein", losses.wasserstein}, {"penalty", losses.penalty}, {"generator_loss", losses.generator}};
 }
 
 /// Trains a Dvgan on a data set. One critic step and one generator step are also callable by themselves.

@@ -18,8 +18,9 @@ struct BasicRunOptions {
   double save_every_minutes = 5;  ///< a checkpoint is also written at the end, and when the run is stopped
   std::size_t log_every = 1;      ///< iterations between two rows of the log; each row waits for the device
   double max_minutes = 0;         ///< stop after that long; 0: no limit
-  std::function<bool()> should_stop = {};                                 ///< asked after every iteration
-  std::function<void(std::size_t iteration, const Losses&)> report = {};  ///< called with every row of the log
+  std::function<bool()> should_stop = {};  ///< asked after every iteration
+  std::function<void(std::size_t iteration, const Losses&)> report =
+      {};            ///< called with every row of the log
   RunNotes notes{};  ///< kept in the checkpoint, where read_run_record() finds them
 };
 

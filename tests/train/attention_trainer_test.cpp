@@ -1,0 +1,263 @@
+// Training of the second paper's models: what is frozen, what the options do, resuming bit for bit.
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <motiongan/train/train_attention.hpp>
+#include <numeric>
+#include <set>
+
+#include "../models/small_actions.hpp"
+
+using namespace motiongan;
+using namespace motiongan::testing;
+namespace fs = std::filesystem;
+
+namespace {
+
+const AttentionTrainOptions small_options{.iterations = 4, .critic_steps = 2, .batch = 4};
+
+struct Run {
+  Context context;
+  AttentionGan model;
+  AttentionTrainer trainer;
+  explicit Run(const AttentionTrainOptions& options = small_options,
+               const AttentionGanOptions& gan = {.hidden = 8})
+      : model(context, small_actions().format, gan), trainer(model, small_actions(), options) {}
+};
+
+std::vector<std::vector<float>> state(AttentionTrainer& trainer) {
+  std::vector<std::vector<float>> all;
+  for (const TrainedPart& part : trainer.parts()) {
+    for (const NamedParameter& p : part.parameters) all.push_back(p.value->value().to_host());
+    all.push_back(part.adam->mean().to_host());
+    all.push_back(part.adam->square().to_host());
+  }
+  return all;
+}
+
+struct Scratch {
+  fs::path path = fs::temp_directory_path() / "motiongan_attention_trainer_test";
+  Scratch() { fs::remove_all(path); }
+  ~Scratch() { fs::remove_all(path); }
+};
+
+}  // namespace
+
+TEST_CASE("a step changes its own network and no other") {
+  Run run;
+  const auto generator = values_in(run.model), critic = values_in(run.trainer.critic()),
+             classifier = values_in(run.trainer.classifier());
+  run.trainer.critic_step(0);
+  CHECK(values_in(run.model) == generator);
+  CHECK(values_in(run.trainer.classifier()) == classifier);
+  const auto critic_after = values_in(run.trainer.critic());
+  CHECK(critic_after != critic);
+  run.trainer.classifier_step(1);
+  CHECK(values_in(run.trainer.critic()) == critic_after);
+  CHECK(values_in(run.model) == generator);
+  const auto classifier_after = values_in(run.trainer.classifier());
+  CHECK(classifier_after != classifier);
+  run.trainer.generator_step(2);
+  CHECK(values_in(run.trainer.critic()) == critic_after);
+  CHECK(values_in(run.trainer.classifier()) == classifier_after);
+  CHECK(values_in(run.model) != generator);
+}
+
+TEST_CASE("while the generator learns, no gradient of critic and classifier is computed") {
+  Run run;
+  const ActionSampler windows(run.context, small_actions(), small_actions().train);
+  const ActionBatch batch = windows.draw(1, 0, 4);
+  const auto critic = values_of(named_parameters(run.trainer.critic()));
+  const auto generator = values_of(named_parameters(run.model));
+  {
+    const Frozen critic_fixed(named_parameters(run.trainer.critic()));
+    const auto loss = run.trainer.generator_loss_of(batch, 0);
+    // Whoever asked for one would be told so.
+    CHECK(says(message_of([&] { grad(loss.total, critic); }), "is a constant"));
+  }
+  CHECK(critic.front().requires_grad());  // and it can learn again
+
+  // Nor is any of its arithmetic done: the products of the backward pass are those of a critic whose weights
+  // are constants from the start.
+  const auto products = [&](bool constant) {
+    const Frozen own(constant ? named_parameters(run.trainer.critic()) : std::vector<NamedParameter>{});
+    const Frozen other(constant ? named_parameters(run.trainer.classifier()) : std::vector<NamedParameter>{});
+    const auto loss = run.trainer.generator_loss_of(batch, 0);
+    const double before = run.context.statistics().gemm_flops;
+    grad(loss.total, generator);
+    return run.context.statistics().gemm_flops - before;
+  };
+  const double frozen = products(true);
+  CHECK(frozen > 0);
+  CHECK(products(false) == frozen);
+  const Var motion = Var::leaf(batch.motion);
+  const auto judged = [&](const std::vector<Var>& by) {
+    const Var score = mean(run.trainer.critic()(motion));
+    const double before = run.context.statistics().gemm_flops;
+    grad(score, by);
+    return run.context.statistics().gemm_flops - before;
+  };
+  std::vector<Var> with_weights = critic;
+  with_weights.push_back(motion);
+  CHECK(judged(with_weights) > 1.5 * judged({motion}));  // what the gradient of the weights would have cost
+}
+
+TEST_CASE("losses are those of their definitions, averaged over the rollouts") {
+  Run run({.critic_steps = 1,
+           .batch = 3,
+           .rollouts = 2,
+           .skeleton_weight = 0.5,
+           .blend_weight = 2,
+           .class_weight = 3});
+  const ActionSampler windows(run.context, small_actions(), small_actions().train);
+  const ActionBatch batch = windows.draw(1, 0, 3);
+  const auto loss = run.trainer.generator_loss_of(batch, 0);
+  const Var classes = Var::constant(batch.classes), prior = Var::constant(batch.prior);
+  const Var first = run.model.make(prior, classes), second = run.model.make(first, classes);
+  const auto score = [&](const Var& a, const Var& b) {
+    return mean(run.trainer.critic()(concat_axis({a, b}, 0))).item();
+  };
+  const SkeletonLoss skeleton(run.context, run.model.format());
+  const double adversarial = -(score(prior, first) + score(first, second)) / 2,
+               skel = (skeleton(prior, first).item() + skeleton(prior, second).item()) / 2,
+               blend = (blend_loss(prior, first).item() + blend_loss(first, second).item()) / 2,
+               wrong = (cross_entropy(run.trainer.classifier()(first), classes).item() +
+                        cross_entropy(run.trainer.classifier()(second), classes).item()) /
+                       2;
+  CHECK(loss.adversarial.item() == doctest::Approx(adversarial).epsilon(1e-4));
+  CHECK(loss.skeleton.item() == doctest::Approx(skel).epsilon(1e-4));
+  CHECK(loss.blend.item() == doctest::Approx(blend).epsilon(1e-4));
+  CHECK(loss.classification.item() == doctest::Approx(wrong).epsilon(1e-4));
+  CHECK(loss.total.item() == doctest::Approx(adversarial + 0.5 * skel + 2 * blend + 3 * wrong).epsilon(1e-4));
+}
+
+TEST_CASE("a loss without weight is not computed") {
+  Run run({.critic_steps = 1, .batch = 3, .skeleton_weight = 0, .blend_weight = 0, .class_weight = 0});
+  run.trainer.iterate();
+  const AttentionLosses losses = run.trainer.losses();
+  CHECK(losses.skeleton == 0);
+  CHECK(losses.blend == 0);
+  CHECK(losses.classification == 0);
+  CHECK(losses.adversarial != 0);
+  CHECK(losses.classifier > 0);
+}
+
+TEST_CASE("weight clipping instead of the penalty") {
+  Run run({.critic_steps = 2, .batch = 4, .weight_clip = 0.01});
+  run.trainer.iterate();
+  for (const auto& values : values_in(run.trainer.critic()))
+    for (const float v : values) CHECK(std::abs(v) <= 0.01f);
+  CHECK(run.trainer.losses().penalty == 0);
+  Run penalised;
+  penalised.trainer.iterate();
+  CHECK(penalised.trainer.losses().penalty > 0);
+}
+
+TEST_CASE("every piece is an option") {
+  const auto trained = [](const AttentionTrainOptions& options, const AttentionGanOptions& gan) {
+    Run run(options, gan);
+    run.trainer.iterate();
+    return values_in(run.model);
+  };
+  std::set<std::vector<std::vector<float>>> all;
+  AttentionTrainOptions o = small_options;
+  all.insert(trained(o, {.hidden = 8}));
+  all.insert(trained(o, {.hidden = 8, .noise_dim = 3}));
+  all.insert(trained(o, {.hidden = 8, .attention = false}));
+  o.critic_classes = true;
+  all.insert(trained(o, {.hidden = 8}));
+  o.rollouts = 3;
+  all.insert(trained(o, {.hidden = 8}));
+  o.skeleton_vectors = true;
+  all.insert(trained(o, {.hidden = 8}));
+  o.generator_steps = 2;
+  all.insert(trained(o, {.hidden = 8}));
+  CHECK(all.size() == 7);
+}
+
+TEST_CASE("a resumed run equals an unbroken one bit for bit") {
+  const Scratch scratch;
+  fs::create_directories(scratch.path);
+  for (const bool clipped : {false, true}) {
+    AttentionTrainOptions options = small_options;
+    options.weight_clip = clipped ? 0.05 : 0;
+    const AttentionGanOptions gan{.hidden = 8, .noise_dim = 2};
+    Run unbroken(options, gan), first(options, gan), second(options, gan);
+    for (int i = 0; i < 3; ++i) unbroken.trainer.iterate();
+    first.trainer.iterate();
+    save_checkpoint(first.trainer, scratch.path / "c.safetensors");
+    load_checkpoint(second.trainer, scratch.path / "c.safetensors");
+    for (int i = 0; i < 2; ++i) second.trainer.iterate();
+    CHECK(state(second.trainer) == state(unbroken.trainer));
+  }
+  Run other({.critic_steps = 3, .batch = 4});
+  CHECK(says(message_of([&] { load_checkpoint(other.trainer, scratch.path / "c.safetensors"); }),
+             "the run was started with"));
+}
+
+TEST_CASE("whole runs: files, log, a model that loads, the baseline too") {
+  const Scratch scratch;
+  const Context context;
+  AttentionGan model(context, small_actions().format, {.hidden = 8});
+  std::size_t reports = 0;
+  AttentionRunOptions run{.save_dir = scratch.path / "gan"};
+  run.report = [&](std::size_t, const AttentionLosses& l) {
+    ++reports;
+    CHECK(l.accuracy >= 0);
+    CHECK(l.accuracy <= 1);
+  };
+  CHECK(train(model, small_actions(), small_options, run).iterations == 4);
+  CHECK(reports == 4);
+  const RunFiles files{scratch.path / "gan"};
+  for (const auto& file : {files.generator(), files.critic(), files.network("classifier"), files.checkpoint(),
+                           files.log(), files.split()})
+    CHECK(fs::exists(file));
+  CHECK(read_csv_log(files.log()).column("gamma").size() == 4);
+  AttentionGan loaded = AttentionGan::load(context, files.generator());
+  CHECK(values_in(loaded) == values_in(model));
+  AttentionGan from_checkpoint = AttentionGan::load(context, files.checkpoint());
+  CHECK(values_in(from_checkpoint) == values_in(model));
+
+  AttentionGan baseline(context, small_actions().format, {.generator = ActionGenerator::lstm, .hidden = 8});
+  const BaselineTrainOptions options{.iterations = 80, .batch = 16, .adam = {.learning_rate = 1e-2}};
+  train(baseline, small_actions(), options, BaselineRunOptions{.save_dir = scratch.path / "lstm"});
+  const auto errors = read_csv_log(scratch.path / "lstm" / "log.csv").column("error");
+  const auto mean_of = [&](std::size_t from) {
+    return std::accumulate(errors.begin() + static_cast<long>(from),
+                           errors.begin() + static_cast<long>(from + 20), 0.0) /
+           20;
+  };
+  CHECK(mean_of(60) < 0.8 * mean_of(0));
+  CHECK(AttentionGan::load(context, scratch.path / "lstm" / "generator.safetensors").is_baseline());
+  CHECK(says(message_of([&] { train(baseline, small_actions(), small_options); }), "LSTM baseline"));
+  CHECK(says(message_of([&] { train(model, small_actions(), options); }), "not the LSTM baseline"));
+}
+
+TEST_CASE("windows: priors and what followed, classes drawn alike") {
+  const Context context;
+  const ActionSampler windows(context, small_actions(), small_actions().train);
+  const ActionBatch batch = windows.draw(3, 7, 200);
+  CHECK(batch.motion.to_host() == windows.draw(3, 7, 200).motion.to_host());
+  CHECK(batch.motion.to_host() != windows.draw(3, 8, 200).motion.to_host());
+  std::size_t ones = 0;
+  for (const std::size_t label : batch.labels) ones += label;
+  CHECK(ones > 70);
+  CHECK(ones < 130);
+  // The prior is the window's first half.
+  const auto whole = batch.motion.to_host(), prior = batch.prior.to_host(), future = batch.future.to_host();
+  CHECK(std::equal(prior.begin(), prior.end(), whole.begin()));
+  CHECK(std::equal(future.begin(), future.end(), whole.begin() + static_cast<std::ptrdiff_t>(prior.size())));
+  CHECK(says(message_of([&] { ActionSampler(context, small_actions(), {}); }), "no clips"));
+}
+
+TEST_CASE("options that cannot be") {
+  CHECK(says(message_of([] { Run({.batch = 0}); }), "must be positive"));
+  CHECK(says(message_of([] { Run({.skeleton_weight = -1}); }), "cannot be below 0"));
+  CHECK(says(message_of([] { Run({.iterations = 10'000'000}); }), "counter"));
+  const Context context;
+  CHECK(says(message_of([&] {
+               AttentionGan(context, small_actions().format,
+                            {.generator = ActionGenerator::lstm, .noise_dim = 3});
+             }),
+             "takes no noise"));
+}
