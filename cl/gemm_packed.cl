@@ -19,6 +19,8 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_pack(global cons
   for (uint i = 0; i < 2 * count; ++i) WRITE(to + i * VW, packed[i]);
 }
 
+#define RECTIFY 16
+
 #define FMA_PANEL(i)                       \
   {                                        \
     const realv value = a[i * row_stride]; \
@@ -62,13 +64,24 @@ static inline void multiply_panels_1(global const real* a, uint count, global co
   sums[4] = s4, sums[5] = s5, sums[6] = s6, sums[7] = s7;
 }
 
+static inline void rectify(global const real* c, size_t stride, uint rows, uint width, global real* out) {
+  for (uint i = 0; i < rows; ++i, c += stride, out += stride)
+    for (uint j = 0; j < width; j += VW) {
+      const realv x = load_some(c + j, width - j);
+      store_some(x < (realv)(0) ? (realv)(0) : x, out + j, width - j);
+    }
+}
+
 // The product with a packed B: one problem, A not transposed; the panels of a segment stand together at its
-// place in B. The same bits as without packing. Groups: x over panels (panels_per_group each), y over rows.
+// place in B. The same bits as without packing. With RECTIFY the ReLU of C goes to `rectified` as well, in
+// rows as far apart as C's. Groups: x over panels (panels_per_group each), y over rows.
 __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_packed(
     global const real* restrict a, global const real* restrict b, global real* restrict c,
-    global const real* restrict bias, global const real* restrict residual, const Numbers g) {
+    global const real* restrict bias, global const real* restrict residual, const Numbers g,
+    global real* restrict rectified, uint rectified_first) {
   realv tile[MOST_ROWS * 2];
   a += g.a_first;
+  rectified += rectified_first;
   b += g.b_first;
   c += g.c_first;
   bias += g.bias_first;
@@ -91,6 +104,9 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_packed(
       for (uint w = 0; w < DIRECT; ++w, j += COLUMNS)
         store_tile(c + row_begin * c_row + j, 0, 1, COLUMNS, bias + j,
                    residual + row_begin * residual_row + j, 0, flags, sums + 2 * w);
+      if (flags & RECTIFY)
+        rectify(c + row_begin * c_row + j - DIRECT * COLUMNS, c_row, 1, DIRECT * COLUMNS,
+                rectified + row_begin * c_row + j - DIRECT * COLUMNS);
       j -= COLUMNS;
       continue;
     }
@@ -119,6 +135,7 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_packed(
       }
       store_tile(c + i * c_row + j, c_row, rows, width, bias + j, residual + i * residual_row + j,
                  residual_row, flags, tile);
+      if (flags & RECTIFY) rectify(c + i * c_row + j, c_row, rows, width, rectified + i * c_row + j);
     }
   }
 }

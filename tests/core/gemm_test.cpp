@@ -311,6 +311,31 @@ TEST_CASE("a packed B changes no bit, whatever the size, and nothing around C") 
   }
 }
 
+TEST_CASE("the ReLU of C beside C, packed and not, on either engine, and nothing around it") {
+  std::mt19937 random(13);
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    const Context& context = context_of(precision);
+    for (const std::size_t m : {1u, 30u, 131u})
+      for (const std::size_t n : {1u, 19u, 32u, 256u, 1001u})
+        for (const bool pack : {false, true})
+          for (const GemmEngine engine : {GemmEngine::native, GemmEngine::clblast}) {
+            GemmCall call = make(context, {.m = m, .n = n, .k = 7, .segments = 2, .bias = true}, random).call;
+            call.rectified_offset = 3;
+            call.rectified = Tensor::from(context, {m * n + 5}, std::vector<double>(m * n + 5, sentinel));
+            if (pack) call.b_panels = pack_b(context, call, GemmEngine::native);
+            gemm(context, call, engine);
+            std::vector<double> expected(m * n + 5, sentinel);
+            const std::vector<double> c = call.c.to_host<double>();
+            for (std::size_t i = 0; i < m * n; ++i) expected[3 + i] = std::max(0.0, c[call.c_offset + i]);
+            CAPTURE(concat(call));
+            CHECK(call.rectified.to_host<double>() == expected);
+          }
+    GemmCall call = make(context, {.m = 4, .n = 5, .k = 6}, random).call;
+    call.rectified = Tensor(context, {19});
+    CHECK_THROWS_AS(gemm(context, call), Error);
+  }
+}
+
 TEST_CASE("native: a transposed A with long rows, which is turned first") {
   std::mt19937 random(12);
   for (const Precision precision : {Precision::f32, Precision::f64})

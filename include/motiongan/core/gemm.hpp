@@ -70,10 +70,17 @@ inline void gemm(const Context& context, const GemmCall& call, GemmEngine engine
   if (call.m == 0 || call.n == 0 || call.batch == 0) return;
   context.count_gemm_flops(2.0 * static_cast<double>(call.m * call.n) *
                            static_cast<double>(call.k * call.segments * call.batch));
-  if (detail::choose_engine(context, engine) == GemmEngine::clblast && detail::clblast_can(call))
-    detail::gemm_clblast(context, call);
-  else
+  const bool native =
+      detail::choose_engine(context, engine) != GemmEngine::clblast || !detail::clblast_can(call);
+  if (native)
     detail::gemm_native(context, call);
+  else
+    detail::gemm_clblast(context, call);
+  if (call.rectified.empty() || (native && !call.b_panels.empty())) return;  // nothing left to do
+  context.launch("elementwise", "leaky_relu",
+                 Grid::items((call.m * call.n + context.vector_width() - 1) / context.vector_width()),
+                 detail::At{call.c, call.c_offset}, detail::At{call.rectified, call.rectified_offset},
+                 call.m * call.n, Real{0}, Real{0});
 }
 
 }  // namespace motiongan

@@ -32,6 +32,10 @@ struct GemmCall {
   Tensor bias = {}, residual = {};  ///< absent when empty; the same for every problem of the batch
   std::size_t residual_offset = 0, residual_ld = 0;
   bool relu = false;
+  /// Where the ReLU of C is wanted beside C: m * n numbers from rectified_offset on. Not for batches, and C
+  /// without gaps (c_ld = n).
+  Tensor rectified = {};
+  std::size_t rectified_offset = 0;
 };
 
 /// The head of every message about a product.
@@ -45,7 +49,7 @@ inline std::ostream& operator<<(std::ostream& out, const GemmCall& g) {
 namespace detail {
 
 // The flags of the kernels in cl/gemm.cl.
-constexpr cl_uint gemm_accumulate = 1, gemm_bias = 2, gemm_residual = 4, gemm_relu = 8;
+constexpr cl_uint gemm_accumulate = 1, gemm_bias = 2, gemm_residual = 4, gemm_relu = 8, gemm_rectify = 16;
 
 inline cl_uint gemm_flags(const GemmCall& g) {
   return (g.accumulate ? gemm_accumulate : 0) | (g.bias.empty() ? 0 : gemm_bias) |
@@ -96,7 +100,11 @@ inline void check_gemm(const Context& context, const GemmCall& g) {
   }
   if (!g.b_panels.empty())
     require(g.batch == 1 && !g.a_transposed, g, ": a packed B is for no batch and A not transposed");
-  for (const Tensor* tensor : {&g.a, &g.b, &g.c, &g.bias, &g.residual})
+  if (!g.rectified.empty())
+    require(g.batch == 1 && g.c_ld == g.n && g.rectified_offset + g.m * g.n <= g.rectified.size(), g,
+            ": ReLU beside C is for no batch and rows of C without gaps, and needs ", g.m * g.n,
+            " numbers from ", g.rectified_offset, " of a tensor ", ShapeOf{g.rectified});
+  for (const Tensor* tensor : {&g.a, &g.b, &g.c, &g.bias, &g.residual, &g.rectified})
     require(tensor->empty() || tensor->context() == context, g, ": a tensor belongs to another context");
 }
 

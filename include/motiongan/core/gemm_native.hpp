@@ -39,8 +39,15 @@ inline GemmSplit split_gemm(const Context& context, const GemmCall& g) {
 /// The same for a packed B: it costs nothing to cut it finely, but that every group reads its panels anew.
 inline GemmSplit split_packed(const Context& context, const GemmCall& g) {
   const std::size_t tile = context.vector_width() * context.real_size() == 64 ? 12 : 6;
-  const std::size_t panels = gemm_panels(context, g), wanted = 8 * context.device().compute_units;
+  const std::size_t panels = gemm_panels(context, g), units = context.device().compute_units;
+  const std::size_t wanted = 8 * units;
   if (g.m == 1 && panels >= wanted) return {1, 4, 1};
+  if (g.m < 8 * tile) {
+    // PoCL hands out halves of what is left: few groups must be equal, and the same number for each core.
+    std::size_t row_groups = 1;
+    while (panels * row_groups < 3 * units || panels * row_groups % units != 0) ++row_groups;
+    return {(g.m + row_groups - 1) / row_groups, 1, 1};
+  }
   const std::size_t row_groups = (wanted + panels - 1) / panels;
   const std::size_t rows = (g.m + row_groups - 1) / row_groups;
   return {(rows + tile - 1) / tile * tile, 1, 1};
@@ -82,15 +89,19 @@ inline void launch_gemm(const Context& context, const GemmCall& g) {
   to.rows_per_group = narrow(split.rows), to.panels_per_group = narrow(split.panels);
   to.panels_at_once = narrow(split.panels_at_once);
   const std::size_t columns = 2 * context.vector_width() * split.panels;
-  if (is_packed) {
-    to.b_first = first(g.b_panels);
-    for (std::size_t s = 0; s < g.segments; ++s)
-      to.b_segment[s] = narrow(s * gemm_panels(context, g) * g.k * 2 * context.vector_width());
+  const Grid grid = Grid::groups((g.n + columns - 1) / columns, (g.m + split.rows - 1) / split.rows, g.batch);
+  if (!is_packed) {
+    context.launch("gemm", "gemm", grid, buffer(g.a), buffer(g.b), g.c.buffer(), buffer(g.bias),
+                   buffer(g.residual), to);
+    return;
   }
-  context.launch(is_packed ? "gemm_packed" : "gemm", is_packed ? "gemm_packed" : "gemm",
-                 Grid::groups((g.n + columns - 1) / columns, (g.m + split.rows - 1) / split.rows, g.batch),
-                 buffer(g.a), buffer(is_packed ? g.b_panels : g.b), g.c.buffer(), buffer(g.bias),
-                 buffer(g.residual), to);
+  to.b_first = first(g.b_panels);
+  for (std::size_t s = 0; s < g.segments; ++s)
+    to.b_segment[s] = narrow(s * gemm_panels(context, g) * g.k * 2 * context.vector_width());
+  if (!g.rectified.empty()) to.flags |= gemm_rectify;
+  context.launch("gemm_packed", "gemm_packed", grid, buffer(g.a), g.b_panels.buffer(), g.c.buffer(),
+                 buffer(g.bias), buffer(g.residual), to, buffer(g.rectified),
+                 first(g.rectified) + narrow(g.rectified_offset));
 }
 
 /// out[j][i] = x[i][j]; both with rows of their own length.
