@@ -80,8 +80,9 @@ TEST_CASE("Conv1d::down is Down of the convolution, and so are its gradients") {
     const Var plain = sum_frames(slice(conv(x), 0, 0, 2 * half), 2, 0.5),
               quick = conv_down(pair_means(x), conv.weight, conv.bias, frames);
     check_near(quick.value().to_host<double>(), plain.value().to_host<double>());
-    check_near(conv_down(pair_means(x), conv.weight, conv.bias, frames, {.relu = true}).value().to_host<double>(),
-               relu(plain).value().to_host<double>());
+    check_near(
+        conv_down(pair_means(x), conv.weight, conv.bias, frames, {.relu = true}).value().to_host<double>(),
+        relu(plain).value().to_host<double>());
     const std::vector<Var> wanted{x, conv.weight, conv.bias};
     const std::vector<Var> a = grad(square(plain), wanted), b = grad(square(quick), wanted);
     for (std::size_t i = 0; i < wanted.size(); ++i)
@@ -134,5 +135,38 @@ TEST_CASE("numbers of frames that halve") {
       found = error.what();
     }
     CHECK(found.find(text) != std::string::npos);
+  }
+}
+
+TEST_CASE("many rows, whose weights are packed first, give the bits of few rows") {
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    const Context context({.precision = precision});
+    Initializer init(context, 4);
+    constexpr std::size_t frames = 33, batch = 17;
+    for (const std::size_t in : {16u, 93u})
+      for (const std::size_t out : {32u, 93u, 13u})
+        for (const std::size_t taps_count : {1u, 3u, 5u}) {
+          const Conv1d conv(init, in, out, taps_count);
+          const Tensor x = random_normal(context, {.seed = 1}, frames, batch, in);
+          const Tensor u = random_normal(context, {.seed = 2}, frames, batch, out);
+          const auto slopes = [&](const Tensor& at, const Tensor& seed) {
+            const Var leaf = Var::leaf(at), y = conv(leaf, {.relu = true});
+            return std::pair{y.value(), grad({y}, {Var::constant(seed)}, {leaf})[0].value()};
+          };
+          const auto [y, slope] = slopes(x, u);
+          const auto halves = [&](const Tensor& at) {
+            const Var pairs = pair_means(Var::constant(at));
+            return taps_count == 3 ? conv_down(pairs, conv.weight, conv.bias, frames).value() : at;
+          };
+          const Tensor halved = halves(x);
+          for (const std::size_t b : {0u, 8u, 16u}) {
+            CAPTURE(concat("in ", in, " out ", out, " taps ", taps_count, " sample ", b));
+            const auto only = [&](const Tensor& t) { return slice(Var::constant(t), 1, b, 1).value(); };
+            const auto [y_alone, slope_alone] = slopes(only(x), only(u));
+            CHECK(y_alone.to_host<double>() == only(y).to_host<double>());
+            CHECK(slope_alone.to_host<double>() == only(slope).to_host<double>());
+            CHECK(halves(only(x)).to_host<double>() == only(halved).to_host<double>());
+          }
+        }
   }
 }

@@ -55,6 +55,23 @@ struct Epilogue {
   bool relu = false;
 };
 
+/// The taps' weights in the order in which the native engine reads them, [taps * panels, in, columns]; empty
+/// where bringing them there costs more than it saves. `call` has what does not change from range to range.
+inline Tensor pack_taps(const Context& context, GemmCall call, std::size_t taps_count, std::size_t tap_size,
+                        std::size_t rows) {
+  const std::size_t columns = 2 * context.vector_width(), last = call.n % columns;
+  // A packed panel is multiplied at full width.
+  const bool narrow = last > 0 && last <= columns / 2 && call.n < 4 * columns;
+  if (rows < 256 || taps_count > 4 || call.k < 16 || narrow) return {};
+  if (call.b_transposed && last == 0) {  // the taps' panels follow one another
+    call.n *= taps_count;
+    return pack_b(context, call);
+  }
+  call.segments = taps_count;
+  for (std::size_t s = 0; s < taps_count; ++s) call.b_offset[s] = s * tap_size;
+  return pack_b(context, call);
+}
+
 inline Tensor taps_value(const Tensor& x, const Tensor& w, const Offsets& offsets, std::size_t frames_out,
                          bool transposed, const Epilogue& epilogue) {
   const std::size_t frames_in = x.dim(0), in = x.shape().back(), rows = x.size() / frames_in / in;
@@ -64,6 +81,10 @@ inline Tensor taps_value(const Tensor& x, const Tensor& w, const Offsets& offset
   shape.back() = out;
   Tensor y(x.context(), shape);
   constexpr std::size_t most = 4;  // segments of one gemm() call
+  GemmCall weights{.n = out, .k = in, .b = w};
+  weights.b_ld = w.dim(2), weights.b_transposed = !transposed;
+  const Tensor packed = pack_taps(x.context(), weights, offsets.size(), tap_size, frames_out * rows);
+  const std::size_t packed_size = packed.empty() ? 0 : packed.size() / offsets.size();
   for (const TapRange& range : tap_ranges(offsets, frames_in, frames_out)) {
     std::size_t done = 0;
     do {
@@ -85,6 +106,10 @@ inline Tensor taps_value(const Tensor& x, const Tensor& w, const Offsets& offset
             static_cast<std::size_t>(static_cast<long>(range.first) + offsets[tap]) * rows * in;
         call.b_offset[i] = tap * tap_size;
       }
+      const std::size_t first_tap = call.segments == 0 ? 0 : range.taps[done];
+      if (!packed.empty() && call.segments > 0 &&
+          range.taps[done + call.segments - 1] - first_tap + 1 == call.segments)
+        call.b_panels = packed.view(first_tap * packed_size, {call.segments * packed_size});
       call.segments = std::max<std::size_t>(call.segments, 1);
       call.c_offset = range.first * rows * out;
       call.accumulate = done > 0;
