@@ -28,6 +28,7 @@
 //
 #include "motiongan/optim/adam.hpp"
 //
+#include "motiongan/motion/action_dataset.hpp"
 #include "motiongan/motion/bvh.hpp"
 #include "motiongan/motion/bvh_stream.hpp"
 #include "motiongan/motion/dataset.hpp"
@@ -46,7 +47,9 @@
 //
 #include "motiongan/models/attention_classifier.hpp"
 #include "motiongan/models/attention_critic.hpp"
+#include "motiongan/models/attention_gan.hpp"
 #include "motiongan/models/attention_generator.hpp"
+#include "motiongan/models/attention_rollout.hpp"
 #include "motiongan/models/cnn_critic.hpp"
 #include "motiongan/models/cnn_generator.hpp"
 #include "motiongan/models/dvgan.hpp"
@@ -60,10 +63,14 @@
 #include "motiongan/train/dvgan_trainer.hpp"
 #include "motiongan/train/progress.hpp"
 #include "motiongan/train/train.hpp"
+#include "motiongan/train/train_attention.hpp"
 #include "motiongan/train/wgan_gp.hpp"
 //
+#include "motiongan/sample/action_generate.hpp"
+#include "motiongan/sample/action_stream.hpp"
 #include "motiongan/sample/motion_stream.hpp"
 //
+#include "motiongan/eval/augmentation_study.hpp"
 #include "motiongan/eval/drift.hpp"
 #include "motiongan/eval/euler_error.hpp"
 #include "motiongan/eval/joint_angle.hpp"

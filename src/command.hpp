@@ -22,9 +22,11 @@ namespace fs = std::filesystem;
 using Job = std::function<int()>;
 
 void add_devices(CLI::App& app, Job& job);
-void add_train(CLI::App& app, Job& job);
+void add_train_dvgan(CLI::App& train, Job& job);
+void add_train_attention(CLI::App& train, Job& job);
 void add_generate(CLI::App& app, Job& job);
 void add_complete(CLI::App& app, Job& job);
+void add_augment(CLI::App& app, Job& job);
 void add_info(CLI::App& app, Job& job);
 void add_view(CLI::App& app, Job& job);
 void add_synth(CLI::App& app, Job& job);

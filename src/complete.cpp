@@ -9,8 +9,8 @@
 #include "motiongan/motion/motion.hpp"
 #include "prompt.hpp"
 #include "show.hpp"
+#include "signals.hpp"
 #include "streaming.hpp"
-#include "training.hpp"
 
 namespace motiongan::command {
 namespace {

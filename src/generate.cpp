@@ -1,11 +1,13 @@
-// motiongan generate: new motion for a text.
+// motiongan generate: new motion for a text, or for a class.
+#include "generate_actions.hpp"
+#include "motiongan/models/attention_gan.hpp"
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/motion/bvh.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "prompt.hpp"
 #include "show.hpp"
+#include "signals.hpp"
 #include "streaming.hpp"
-#include "training.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -73,10 +75,9 @@ std::optional<std::vector<motion::Motion>> write_long(const Dvgan& model, const 
   return write_streamed(model, job, drift);
 }
 
-int generate(const GenerateArgs& args) {
+int generate(const GenerateArgs& args, const fs::path& file) {
   const std::vector<std::string> texts = all_texts(args);
   check_samples(args.options.first_sample, args.options.count);
-  const fs::path file = model_file(args.model);
   const Context context;
   const Dvgan model = Dvgan::load(context, file);
   const motion::MotionFormat& format = model.format();
@@ -128,18 +129,38 @@ int generate(const GenerateArgs& args) {
   return 0;
 }
 
+/// For whichever kind of model it is; refuses options of the other kind.
+int generate_either(const GenerateArgs& args, ActionGenerateArgs actions, const CLI::App& verb) {
+  const fs::path file = model_file(args.model);
+  if (!AttentionGan::describes(io::SafeTensors::read(file))) {
+    const std::string wrong = given_action_options(verb);
+    require(wrong.empty(), file.string(), " makes motion for a text: it has no classes, and takes no ", wrong,
+            "; use --text \"walk\"");
+    return generate(args, file);
+  }
+  for (const char* name : {"--text", "--prompts", "--drift"})
+    require(verb.count(name) == 0, file.string(), " makes motion of classes: it takes no ", name,
+            "; use --class NAME");
+  actions.model = args.model, actions.out = args.out, actions.html = args.html, actions.png = args.png;
+  actions.count = args.options.count, actions.frames = args.options.frames;
+  actions.first_sample = args.options.first_sample, actions.seed = args.options.seed,
+  actions.rate = args.rate;
+  return generate_actions(actions, verb, file);
+}
+
 }  // namespace
 
 void add_generate(CLI::App& app, Job& job) {
   CLI::App* verb = app.add_subcommand(
       "generate",
-      "Make new motion for a text and write it as BVH.\n"
+      "Make new motion for a text, or for classes from a second of motion on, and write it as files.\n"
       "Files are called by the text and the number of the sample (walk-slowly_000.bvh); those that are there "
       "are\n"
       "replaced. The same model, text, seed and sample give the same motion, whatever --count is. A model "
       "with\n"
       "an RNN generator makes any number of frames; they are written as they are made.");
   const auto args = std::make_shared<GenerateArgs>();
+  const auto actions = std::make_shared<ActionGenerateArgs>();
   verb->add_option("MODEL", args->model, "model file, or the --save folder of a training")
       ->required()
       ->type_name("");
@@ -148,7 +169,7 @@ void add_generate(CLI::App& app, Job& job) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   verb->add_option("--prompts", args->prompts, "file with a text on each line")->type_name("FILE");
-  verb->add_option("--count", args->options.count, "motions for each text")
+  verb->add_option("--count", args->options.count, "motions for each text, or of a schedule of classes")
       ->check(positive())
       ->capture_default_str();
   verb->add_option("--seed", args->options.seed, "another seed gives other motions")
@@ -173,7 +194,10 @@ void add_generate(CLI::App& app, Job& job) {
       ->type_name("DIR");
   verb->add_option("--html", args->html, "also write a page that plays the motions")->type_name("FILE");
   verb->add_option("--png", args->png, "also write a picture of their poses")->type_name("FILE");
-  verb->callback([&job, args] { job = [args] { return generate(*args); }; });
+  add_action_options(*verb, *actions);
+  verb->callback([&job, args, actions, verb] {
+    job = [args, actions, verb] { return generate_either(*args, *actions, *verb); };
+  });
 }
 
 }  // namespace motiongan::command

@@ -4,9 +4,11 @@
 
 #include "info.hpp"
 #include "motiongan/io/motion_format_json.hpp"
+#include "motiongan/io/position_format_json.hpp"
 #include "motiongan/io/safetensors.hpp"
 #include "motiongan/train/checkpoint.hpp"
-#include "motiongan/train/train.hpp"
+#include "motiongan/train/csv_log.hpp"
+#include "motiongan/train/run.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -56,11 +58,27 @@ void print_options(std::string_view fact, const std::string& json) {
   print_wrapped(fact, texts, ", ");
 }
 
+void print_positions(const motion::PositionFormat& format) {
+  const double second = static_cast<double>(format.frames) / format.rate;
+  print_fact("motion", fmt::format("{} frames from {} before, at {} per second ({})", format.frames,
+                                   format.frames, brief(format.rate), duration(second)));
+  print_fact("skeleton",
+             fmt::format("{}, root {}; {} of a pose change{}", counted(format.skeleton().size(), "joint"),
+                         format.skeleton().joints.front().name, counted(format.dof(), "number"),
+                         format.layout.root_track() ? ", steps, turns and height of the root among them"
+                                                    : "; the root stays where it is"));
+  print_wrapped("classes", format.classes, ", ");
+}
+
+/// For a model of classes, or of texts.
 void print_format(const io::SafeTensors& file, const std::string& where) {
   const auto text = file.metadata.find("format");
   require(text != file.metadata.end(), where, ": the model has no motion format in its metadata");
   const auto json = nlohmann::json::parse(text->second, nullptr, false);
   require(!json.is_discarded(), where, ": the model's motion format cannot be read");
+  const std::string& model = file.metadata.at("motiongan_model");
+  if (model == "attention_generator" || model == "lstm_baseline")
+    return print_positions(io::position_format_from_json(json));
   const motion::MotionFormat format = io::motion_format_from_json(json);
   print_fact("motion", fmt::format("{} frames at {} per second ({})", format.frames, brief(format.rate),
                                    duration(static_cast<double>(format.frames) / format.rate)));
@@ -101,8 +119,9 @@ void print_tensors(const fs::path& path) {
   fmt::print("{}: {}\n", where, checkpoint ? "a checkpoint of a training run" : "a model, " + model->second);
   if (checkpoint) {
     print_fact("iteration", file.metadata.at("iteration"));
-    print_fact("generator", millions(count_below(file, "generator.")) + " parameters");
-    print_fact("critic", millions(count_below(file, "critic.")) + " parameters");
+    for (const char* network : {"generator", "critic", "classifier"})
+      if (const std::size_t n = count_below(file, std::string(network) + "."); n > 0)
+        print_fact(network, millions(n) + " parameters");
   } else {
     print_fact("parameters", millions(numbers));
   }
@@ -121,6 +140,13 @@ void print_run(const fs::path& folder) {
   const RunFiles files{folder};
   fmt::print("{}: a training run; its log is {}\n", folder.string(), files.log().string());
   print_tensors(files.checkpoint());
+  if (!fs::exists(files.log())) return;
+  const CsvTable log = read_csv_log(files.log());
+  if (log.rows.empty()) return;
+  std::vector<std::string> texts;
+  for (std::size_t c = 0; c < log.columns.size(); ++c)
+    texts.push_back(fmt::format("{} {}", log.columns[c], brief(log.rows.back()[c])));
+  print_wrapped("last row", texts, ", ");
 }
 
 }  // namespace motiongan::command

@@ -22,7 +22,8 @@ class Help : public CLI::Formatter {
 
 int run(int argc, char** argv) {
   CLI::App app(
-      "motiongan trains GANs on motion clips (BVH) and their captions, and makes new motion for a text.\n"
+      "motiongan trains GANs on motion clips and their captions or classes, and makes new motion for a "
+      "text\nor a class.\n"
       "`motiongan VERB --help` lists the options of a verb; `motiongan demo` shows all of it in minutes.");
   app.name("motiongan");
   app.set_version_flag("--version", "motiongan " MOTIONGAN_VERSION);
@@ -40,9 +41,13 @@ int run(int argc, char** argv) {
       ->type_name("WISH");
   Job job;
   add_devices(app, job);
-  add_train(app, job);
+  CLI::App* train = app.add_subcommand("train", "Train a model on motion clips with captions or classes");
+  train->require_subcommand(1);
+  add_train_dvgan(*train, job);
+  add_train_attention(*train, job);
   add_generate(app, job);
   add_complete(app, job);
+  add_augment(app, job);
   add_info(app, job);
   add_view(app, job);
   add_compare(app, job);

@@ -5,7 +5,7 @@
 #include "command.hpp"
 #include "motiongan/motion/text_file.hpp"
 #include "motiongan/motion/vocabulary.hpp"
-#include "motiongan/train/train.hpp"
+#include "motiongan/train/run.hpp"
 
 namespace motiongan::command {
 

@@ -4,11 +4,21 @@
 #include <span>
 
 #include "command.hpp"
+#include "motiongan/motion/motion.hpp"
 #include "motiongan/view/player.hpp"
 #include "motiongan/view/pose_strip.hpp"
 #include "write_png.hpp"
 
 namespace motiongan::command {
+
+/// Frames of a motion that a page shows at most.
+inline constexpr std::size_t most_shown = 3000;
+
+/// What a page shows of a motion at the model's rate: at most most_shown frames, at `rate` (0: as it is).
+inline motion::Motion for_page(const motion::Motion& motion, double rate) {
+  const motion::Motion shown = rate > 0 ? motion::resample(motion, rate) : motion;
+  return shown.frames > most_shown ? slice(shown, 0, most_shown) : shown;
+}
 
 /// Writes the page and says how to look at it.
 inline void show_page(const fs::path& path, std::span<const view::ViewedMotion> motions,

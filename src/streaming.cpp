@@ -7,7 +7,7 @@
 
 #include "motiongan/motion/bvh_stream.hpp"
 #include "motiongan/train/progress.hpp"
-#include "training.hpp"
+#include "signals.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -106,11 +106,6 @@ std::optional<std::vector<motion::Motion>> write_streamed(const Dvgan& model, co
 std::size_t shown_frames(double model_rate, double rate) {
   if (rate <= 0) return most_shown;
   return static_cast<std::size_t>(std::ceil(static_cast<double>(most_shown) * model_rate / rate)) + 1;
-}
-
-motion::Motion for_page(const motion::Motion& motion, double rate) {
-  const motion::Motion shown = rate > 0 ? motion::resample(motion, rate) : motion;
-  return shown.frames > most_shown ? slice(shown, 0, most_shown) : shown;
 }
 
 int stopped(std::size_t complete) {

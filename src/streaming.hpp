@@ -5,11 +5,9 @@
 #include "command.hpp"
 #include "drift_report.hpp"
 #include "motiongan/sample/motion_stream.hpp"
+#include "show.hpp"
 
 namespace motiongan::command {
-
-/// Frames of a motion that a page shows at most.
-inline constexpr std::size_t most_shown = 3000;
 
 struct StreamJob {
   std::vector<CharacterOptions> characters = {};
@@ -29,9 +27,6 @@ std::optional<std::vector<motion::Motion>> write_streamed(const Dvgan& model, co
 
 /// Frames at the model's rate that make most_shown frames at `rate` (0: the model's).
 std::size_t shown_frames(double model_rate, double rate);
-
-/// What a page shows of a motion at the model's rate: at most most_shown frames, at `rate` (0: as it is).
-motion::Motion for_page(const motion::Motion& motion, double rate);
 
 /// What is said where a signal asked to stop, and the exit status.
 int stopped(std::size_t complete);

@@ -1,45 +1,19 @@
 // motiongan train dvgan: from clips and captions to a model.
 #include "motiongan/train/progress.hpp"
+#include "run_start.hpp"
 #include "training.hpp"
 
 namespace motiongan::command {
 namespace {
 
-/// save/NAME, by the folder's own name.
-fs::path default_save(const TrainArgs& args) {
-  if (args.procedural > 0) return "save/procedural";
-  fs::path folder = fs::absolute(args.folder).lexically_normal();
-  if (!folder.has_filename()) folder = folder.parent_path();
-  const fs::path name = folder.stem();
-  return fs::path("save") / (name.empty() ? "run" : name);
-}
-
 int run_training(TrainArgs args, const CLI::App& verb) {
-  require(!(verb.count("FOLDER") && verb.count("--procedural")),
-          "give a folder of clips or --procedural, not both");
-  if (verb.count("--procedural")) require(args.procedural > 0, "--procedural 0: expected at least 1 clip");
-  const bool has_data = !args.folder.empty() || args.procedural > 0;
-  require(has_data || args.resume,
-          "there is nothing to train on: give a folder of BVH clips, or --procedural");
-  require(has_data || !args.save.empty(), "--resume needs --save DIR, the folder of the run");
-  const fs::path folder = args.save.empty() ? default_save(args) : fs::path(args.save);
-  const RunFiles files{folder};
-  std::size_t done = 0;
-  choose_defaults(args, verb.count("--final-cut") > 0);  // a run that is resumed has its own, below
-  if (args.resume) {
-    require(fs::exists(files.checkpoint()), "there is no run to resume in ", folder.string(), " (no ",
-            files.checkpoint().filename().string(), " there)");
-    const RunRecord record = read_run_record(files.checkpoint());
-    done = record.iteration;
-    if (const auto note = record.notes.find("options"); note != record.notes.end())
-      take_from_note(args, verb, note->second, files.checkpoint());
-    else
-      require(has_data, files.checkpoint().string(),
-              " does not say what it was trained on; give the folder and the options of its first start");
-  } else {
-    require(!fs::exists(files.checkpoint()), folder.string(),
-            " already holds a run; continue it with --resume, or choose another --save");
-  }
+  choose_defaults(args, verb.count("--final-cut") > 0);  // a run that is resumed has its own
+  const auto take = [&](const std::string& note, const fs::path& from) {
+    take_from_note(args, verb, note, from);
+  };
+  const auto [folder, done] = begin_run(
+      {.folder = args.folder, .save = args.save, .procedural = args.procedural, .resume = args.resume}, verb,
+      take);
   if (!args.folder.empty()) {
     args.captions = captions_for(args.folder, args.captions).string();
     args.folder = fs::absolute(args.folder).lexically_normal().string();
@@ -88,10 +62,8 @@ int run_training(TrainArgs args, const CLI::App& verb) {
 
 }  // namespace
 
-void add_train(CLI::App& app, Job& job) {
-  CLI::App* train = app.add_subcommand("train", "Train a model on captioned motion clips");
-  train->require_subcommand(1);
-  CLI::App* verb = train->add_subcommand(
+void add_train_dvgan(CLI::App& train, Job& job) {
+  CLI::App* verb = train.add_subcommand(
       "dvgan",
       "Train a DVGAN (text to motion) on a folder of BVH clips.\n"
       "Writes generator, critic, checkpoint, log.csv and split.tsv to the --save folder. Ctrl-C saves and "

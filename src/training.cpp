@@ -1,10 +1,8 @@
 // What a training run is made of: its options, its data, and how it is stopped.
 #include "training.hpp"
 
-#include <csignal>
-#include <nlohmann/json.hpp>
-
 #include "motiongan/motion/procedural.hpp"
+#include "run_start.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -43,37 +41,15 @@ void each_kept(TrainArgs& a, F&& f) {
   f("--completions", a.training.completion_share);
 }
 
-volatile std::sig_atomic_t signal_number = 0;
-
-extern "C" void take_signal(int number) {
-  signal_number = number;
-  std::signal(number, SIG_DFL);  // the second one ends the process at once
-}
-
 }  // namespace
 
 std::string options_as_note(TrainArgs& args) {
-  nlohmann::json out;
-  each_kept(args, [&](const char* name, const auto& member) { out[name] = member; });
-  return out.dump();
+  return note_of([&](const auto& f) { each_kept(args, f); });
 }
 
-/// Takes from a run's note what the command line does not give.
 void take_from_note(TrainArgs& args, const CLI::App& verb, const std::string& note, const fs::path& from) {
-  const auto kept = nlohmann::json::parse(note, nullptr, false);
-  require(kept.is_object(), from.string(), ": the options of the run cannot be read");
-  const bool other_data = verb.count("FOLDER") + verb.count("--procedural") > 0;
-  each_kept(args, [&](const std::string& name, auto& member) {
-    const bool names_data =
-        name == "FOLDER" || name == "--procedural" || (name == "--captions" && other_data);
-    if (verb.count(name) > 0 || (names_data && other_data)) return;
-    if (!kept.contains(name)) return;  // the option is younger than the run
-    try {
-      kept.at(name).get_to(member);
-    } catch (const nlohmann::json::exception& error) {
-      throw Error(from.string(), ": the run's option ", name, " cannot be read: ", error.what());
-    }
-  });
+  take_note([&](const auto& f) { each_kept(args, f); }, verb, note, from,
+            [](const std::string& name) { return name == "--captions"; });
 }
 
 void choose_defaults(TrainArgs& a, bool final_cut_given) {
@@ -170,12 +146,5 @@ void print_model(Dvgan& model) {
                          options.cuts() ? ", final cut" : ""));
   print_fact("device", describe(model.context().device()));
 }
-
-void catch_signals() {
-  std::signal(SIGINT, take_signal);
-  std::signal(SIGTERM, take_signal);
-}
-
-int caught_signal() { return signal_number; }
 
 }  // namespace motiongan::command

@@ -2,6 +2,7 @@
 #pragma once
 #include "command.hpp"
 #include "motiongan/train/train.hpp"
+#include "signals.hpp"
 
 namespace motiongan::command {
 
@@ -38,10 +39,5 @@ void fill_in_choices(TrainArgs& args);
 motion::Dataset load_data(const TrainArgs& args);
 void print_data(const motion::Dataset& data, const TrainArgs& args);
 void print_model(Dvgan& model);
-
-/// From here on Ctrl-C (and SIGTERM) asks to stop; a second one ends the process.
-void catch_signals();
-/// The signal that asked, or 0.
-int caught_signal();
 
 }  // namespace motiongan::command

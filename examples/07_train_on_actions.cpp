@@ -1,0 +1,40 @@
+// Trains the attention model on clips with classes, then goes on from a second of a clip by a schedule of
+// classes. With your own clips: ActionDataset::from_folder("clips", {.labels = "labels.tsv"}).
+#include <cstdio>
+#include <motiongan.hpp>
+using namespace motiongan;
+
+int main() {
+  Context ctx;
+  // Built-in motion; a clip's class is the first word of its name (walk_000).
+  const auto data = motion::ActionDataset::from_motions(
+      motion::procedural_motions({.clips = 34, .seconds = 4, .rate = 20}),
+      {.frames = 10, .rate = 10, .pattern = "{label}_*", .classes = {"walk", "run", "jump"}});
+  std::printf("%zu clips to train on, %zu for testing\n", data.train.size(), data.test.size());
+
+  AttentionGan model(ctx, data.format, {.hidden = 16});
+  train(model, data, AttentionTrainOptions{.iterations = 5, .critic_steps = 2, .batch = 8},
+        {.log_every = 5, .report = [](std::size_t iteration, const AttentionLosses& l) {
+           std::printf("iteration %zu: wasserstein %.3f, skeleton %.3f, blend %.3f, accuracy %.2f\n",
+                       iteration, l.wasserstein, l.skeleton, l.blend, l.accuracy);
+         }});
+  model.save("actions.safetensors");
+
+  // A second that somebody did, then two and a half seconds of walking and a second of running.
+  const std::vector<ActionPrior> priors{prior_from(clip_of(data, data.test.front()), data.format)};
+  const auto clips = generate(model, priors, parse_action_schedule("walk:2.5s,run:1s", data.format));
+  const motion::PositionClip& made = clips.front();
+  std::printf("%zu frames, %zu of them given\n", made.frames, data.format.frames);
+
+  // Positions become rotations for the skeleton, so that it can be written as BVH.
+  const motion::Motion turned = motion::motion_from_positions(made);
+  motion::write_bvh("walk-run.bvh", turned);
+  motion::write_position_csv("walk-run.csv", made);
+  const std::vector<view::ViewedMotion> shown{{"walk, then run", turned, data.format.frames}};
+  view::write_player("walk-run.html", shown);
+
+  // A synthetic clip for each training clip: same first second, same class, same length.
+  const auto synthetic = synthesise(model, data, data.train);
+  std::printf("%zu synthetic clips, the first of class %s\n", synthetic.size(),
+              data.format.classes[synthetic.front().label].c_str());
+}
