@@ -31,6 +31,7 @@ void add_info(CLI::App& app, Job& job);
 void add_view(CLI::App& app, Job& job);
 void add_synth(CLI::App& app, Job& job);
 void add_compare(CLI::App& app, Job& job);
+void add_ablate(CLI::App& app, Job& job);
 void add_demo(CLI::App& app, Job& job);
 
 /// How this command was called, for lines that a reader is to type: "motiongan", or the path to it.

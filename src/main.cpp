@@ -51,6 +51,7 @@ int run(int argc, char** argv) {
   add_info(app, job);
   add_view(app, job);
   add_compare(app, job);
+  add_ablate(app, job);
   add_synth(app, job);
   add_demo(app, job);
   try {

@@ -24,7 +24,8 @@ motion::PositionClip leg(const std::string& id, std::size_t frames, double bend,
   clip.skeleton.joints = {
       {"Hip", -1, {0, 0, 0}, {}, {}}, {"Knee", 0, {0, -1, 0}, {}, {}}, {"Foot", 1, {0, -1, 0}, {}, {}}};
   for (std::size_t f = 0; f < frames; ++f) {
-    const double angle = motion::radians(bend + 2 * double(f)), x = step * double(f) + 0.05 * std::sin(double(f));
+    const double angle = motion::radians(bend + 2 * double(f)),
+                 x = step * double(f) + 0.05 * std::sin(double(f));
     // The whole leg swings a little too, so that no dimension is constant.
     const double swing = 0.1 * std::sin(0.7 * double(f));
     const Vec3 hip{x, 2 + 0.01 * std::sin(double(f)), 0.02 * std::cos(double(f))};
@@ -89,6 +90,7 @@ TEST_CASE("windows: of long test clips alone, classes in turn, none twice, the s
   CHECK(w.long_clips == fitting);
   CHECK(w.windows.size() == 8);
   CHECK(w.per_class == std::vector<std::size_t>{4, 4});
+  CHECK(w.clips_per_class[0] + w.clips_per_class[1] == std::min<std::size_t>(fitting, 8));
   std::set<std::pair<std::size_t, std::size_t>> seen;
   for (std::size_t i = 0; i < w.windows.size(); ++i) {
     const EvaluationWindow& window = w.windows[i];
@@ -182,8 +184,10 @@ TEST_CASE("models that do a known wrong") {
   CHECK(still.step < 1e-5);
   CHECK(still.speed < 1e-4);
   CHECK(still.window_error == doctest::Approx(2 * (1 + 10) / 2.0).epsilon(1e-3));
-  CHECK(evaluation.measure_long(stand_still(data.format), 50).angles.size() == 50);
-  CHECK(evaluation.measure_long(stand_still(data.format), 50).curve_error == 0);
+  const ActionMeasures alone = evaluation.measure_alone(evaluation.positions(stand_still(data.format), 50));
+  CHECK(alone.angles.size() == 50);
+  CHECK(alone.curve_error == 0);
+  CHECK(alone.bone_error < 1e-3);
 }
 
 TEST_CASE("networks as makers: the same as their own, second after second, and one not changed by others") {

@@ -1,7 +1,9 @@
 // The second paper's comparison: its model, the model without each of its parts, and an LSTM (SPEC section
 // 7).
 #pragma once
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -45,10 +47,10 @@ inline std::span<const AblationVariant> ablation_variants() {
   static constexpr AblationVariant all[] = {
       {"full", "full", "best: lowest deviation from the truth over time"},
       {"no_attention", "no attention", "clearly less accurate over time", false},
-      {"no_blend", "no blend loss", "starts close, soon leaves the truth", true, true, false},
-      {"no_skeleton", "no skeleton loss", "much less accurate", true, false, true},
-      {"no_losses", "neither loss", "worse than with the losses", true, false, false},
-      {"neither", "no attention, neither loss", "worse than with all parts", false, false, false},
+      {"no_blend", "no blend", "starts close, soon leaves the truth", true, true, false},
+      {"no_skeleton", "no skeleton", "much less accurate", true, false, true},
+      {"no_losses", "no losses", "worse than with the losses", true, false, false},
+      {"neither", "neither", "worse than with all parts", false, false, false},
       {"lstm", "LSTM", "starts very close, then falls to a mean pose", false, false, false, true}};
   return all;
 }
@@ -118,11 +120,13 @@ inline void write_table(const std::filesystem::path& path, const ActionEvaluatio
   motion::write_text_atomically(path, text);
 }
 
+enum class Verdict { yes, no, even };
+
 /// What the paper says of a part of its model, and whether it is so here.
 struct AblationClaim {
-  std::string claim;     ///< such as "attention brings the curve nearer to the truth"
-  std::string evidence;  ///< the numbers
-  bool holds = false;
+  std::string claim;              ///< such as "attention brings the curve nearer to the truth"
+  std::string evidence;           ///< the numbers
+  Verdict verdict = Verdict::no;  ///< even: the two numbers are within 10% of each other
 };
 
 /// The paper's claims that the results can tell about, those of variants that are there. One training of each
@@ -147,7 +151,9 @@ inline std::vector<AblationClaim> judge_claims(std::span<const AblationResult> r
     out.push_back(
         {std::move(claim),
          concat(with, " ", rounded(factor * a->*what), ", ", without, " ", rounded(factor * b->*what), unit),
-         a->*what < b->*what});
+         std::max(a->*what, b->*what) <= 1.1 * std::min(a->*what, b->*what) ? Verdict::even
+         : a->*what < b->*what                                              ? Verdict::yes
+                                                                            : Verdict::no});
   };
   less("attention: nearer to the truth's curve", "full", "no_attention", &ActionMeasures::curve_error,
        " degrees");
@@ -164,11 +170,12 @@ inline std::vector<AblationClaim> judge_claims(std::span<const AblationResult> r
        metres ? " mm" : "", metres ? 1000 : 1);
   if (const ActionMeasures* lstm = find("lstm")) {
     const double first = lstm->angles.front(), last = lstm->angles.back();
-    out.push_back({"the LSTM: nearer at first than at last, and its angles fall",
-                   concat("error ", rounded(lstm->curve_error_first), " degrees in the first second, ",
-                          rounded(lstm->curve_error_last), " in the last; mean angle ", rounded(first),
-                          " to ", rounded(last)),
-                   lstm->curve_error_first < lstm->curve_error_last && last < first});
+    out.push_back(
+        {"the LSTM: nearer at first than at last, and its angles fall",
+         concat("error ", rounded(lstm->curve_error_first), " degrees in the first second, ",
+                rounded(lstm->curve_error_last), " in the last; mean angle ", rounded(first), " to ",
+                rounded(last)),
+         lstm->curve_error_first < lstm->curve_error_last && last < first ? Verdict::yes : Verdict::no});
   }
   return out;
 }

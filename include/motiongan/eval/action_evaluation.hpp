@@ -158,10 +158,11 @@ class ActionEvaluation {
     return measure_positions(positions(maker, options_.frames), true);
   }
 
-  /// Measures what a model makes over any length. There is no real motion to compare with: errors of angles
-  /// are 0.
-  ActionMeasures measure_long(const FutureMaker& maker, std::size_t frames) const {
-    return measure_positions(positions(maker, frames), false);
+  /// Measures positions() of any length by themselves: errors of angles are 0.
+  ActionMeasures measure_alone(const std::vector<std::vector<motion::Vec3>>& all) const {
+    require(all.size() == real_.size() && !all.front().empty(), "found positions of ", all.size(),
+            " motions, expected those of ", real_.size(), " windows");
+    return measure_positions(all, false);
   }
 
  private:

@@ -28,6 +28,7 @@ struct EvaluationWindows {
   std::size_t clips = 0;               ///< test clips
   std::size_t long_clips = 0;          ///< those of T + future frames or more; the others give no window
   std::vector<std::size_t> per_class;  ///< windows of each class
+  std::vector<std::size_t> clips_per_class;  ///< and the clips that they are of
 };
 
 /// At most `count` windows of T + `future` frames of the test clips, no two alike. Classes take turns, and in
@@ -42,6 +43,7 @@ inline EvaluationWindows choose_windows(const motion::ActionDataset& data, std::
   out.future = future;
   out.clips = data.test.size();
   out.per_class.assign(classes, 0);
+  out.clips_per_class.assign(classes, 0);
   std::vector<std::vector<std::size_t>> clips(classes);  // long enough, in the order of their turns
   std::size_t longest = 0;
   for (std::size_t i = 0; i < data.test.size(); ++i) {
@@ -72,6 +74,7 @@ inline EvaluationWindows choose_windows(const motion::ActionDataset& data, std::
         const RandomKey key{.seed = seed, .stream = Stream::windows, .step = static_cast<std::uint32_t>(c)};
         std::size_t start = random_below(key, static_cast<std::uint32_t>(turn[c]), starts);
         while (taken[i].contains(start)) start = (start + 1) % starts;
+        out.clips_per_class[c] += taken[i].empty();
         taken[i].insert(start);
         chosen.push_back({i, start, c});
         ++out.per_class[c];
