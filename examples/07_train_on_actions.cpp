@@ -8,7 +8,7 @@ int main() {
   Context ctx;
   // Built-in motion; a clip's class is the first word of its name (walk_000).
   const auto data = motion::ActionDataset::from_motions(
-      motion::procedural_motions({.clips = 34, .seconds = 4, .rate = 20}),
+      motion::procedural_motions({.clips = 68, .seconds = 4, .rate = 20}),
       {.frames = 10, .rate = 10, .pattern = "{label}_*", .classes = {"walk", "run", "jump"}});
   std::printf("%zu clips to train on, %zu for testing\n", data.train.size(), data.test.size());
 

@@ -7,7 +7,7 @@ using namespace motiongan;
 int main() {
   Context ctx;
   const auto data = motion::ActionDataset::from_motions(
-      motion::procedural_motions({.clips = 34, .seconds = 4, .rate = 20}),
+      motion::procedural_motions({.clips = 68, .seconds = 4, .rate = 20}),
       {.frames = 10, .rate = 10, .pattern = "{label}_*", .classes = {"walk", "run", "jump"}});
   AttentionGan model(ctx, data.format, {.hidden = 16, .noise_dim = 4});
   train(model, data, AttentionTrainOptions{.iterations = 5, .critic_steps = 2, .batch = 8});

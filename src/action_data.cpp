@@ -90,7 +90,7 @@ void fill_in_choices(ActionDataArgs& a) {
                                                     : motion::FirstFrame::automatic;
 }
 
-void take_data_of_run(ActionDataArgs& args, const CLI::App& verb, const fs::path& run) {
+void take_data_of_run(ActionDataArgs& args, const CLI::App& verb, const fs::path& run, const char* remedy) {
   const fs::path checkpoint = RunFiles{run}.checkpoint();
   std::string note;
   if (fs::exists(checkpoint)) {
@@ -100,7 +100,7 @@ void take_data_of_run(ActionDataArgs& args, const CLI::App& verb, const fs::path
   if (!note.empty())
     take_note([&](const auto& f) { each_kept(args, f); }, verb, note, checkpoint, describes_clips);
   require(!args.folder.empty() || args.procedural > 0, run.string(),
-          " does not say what the model was trained on; give the folder of clips and their labels");
+          " does not say what the model was trained on; ", remedy);
 }
 
 std::vector<motion::LabelledMotion> procedural_clips(const ActionDataArgs& args) {

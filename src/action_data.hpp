@@ -45,9 +45,9 @@ void default_procedural(const CLI::App& verb, ActionDataArgs& args);
 /// puts choices given as words where the library has them.
 void fill_in_choices(ActionDataArgs& args);
 
-/// Takes the data of a run from its checkpoint's note, but for what the command line of `verb` gives. Error
-/// where the run does not say, and nothing is given.
-void take_data_of_run(ActionDataArgs& args, const CLI::App& verb, const fs::path& run);
+/// Takes the data of a run from its checkpoint's note, but for what the command line of `verb` gives. Where
+/// the run does not say, and nothing is given, an Error that ends in `remedy`.
+void take_data_of_run(ActionDataArgs& args, const CLI::App& verb, const fs::path& run, const char* remedy);
 
 /// Says what it reads.
 motion::ActionDataset load_data(const ActionDataArgs& args);

@@ -91,7 +91,7 @@ int augment(AugmentArgs args, const CLI::App& verb) {
   const AttentionGan model = AttentionGan::load(context, file);
   const motion::PositionFormat& format = model.format();
   const fs::path run = fs::is_directory(args.model) ? fs::path(args.model) : file.parent_path();
-  take_data_of_run(args.data, verb, run);
+  take_data_of_run(args.data, verb, run, "give the folder of clips and their labels");
   fill_in_choices(args.data);
   motion::ActionDatasetOptions& options = args.data.options;
   options.frames = format.frames;

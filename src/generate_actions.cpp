@@ -49,7 +49,9 @@ std::vector<GivenPrior> find_priors(const ActionGenerateArgs& args, const CLI::A
   require(fs::exists(RunFiles{run}.split()),
           "give the second to go on from with --from CLIP: ", file.string(),
           " lies in no folder of a run, from whose clips one could be drawn");
-  take_data_of_run(data, verb, run);
+  take_data_of_run(
+      data, verb, run,
+      "give the second to go on from with --from CLIP, or the clips to draw one from with --data FOLDER");
   if (!args.data.empty()) data.folder = args.data, data.procedural = 0;
   fill_in_choices(data);
   return draw_priors(run, format, data, label, args.seed, args.first_sample, args.count);

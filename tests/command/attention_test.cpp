@@ -126,6 +126,8 @@ TEST_CASE("training on classes: every loss is told, and a resumed run ends bit-e
     fs::create_directory("bare");
     fs::copy_file("whole/generator.safetensors", "bare/generator.safetensors");
     refused("generate bare --class walk", "give the second to go on from with --from");
+    fs::copy_file("whole/split.tsv", "bare/split.tsv");
+    refused("generate bare --class walk", "or the clips to draw one from with --data");
   }
   SUBCASE("a synthetic clip for each training clip; the study compares") {
     const Said said =
