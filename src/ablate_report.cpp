@@ -32,6 +32,32 @@ motion::Motion as_drawn(const motion::Skeleton& skeleton, double rate,
   return out;
 }
 
+/// The positions with those that are far from any body brought near, and whether there were any: a model that
+/// falls apart makes limbs of a hundred metres, which no picture can hold.
+bool bring_near(const motion::Skeleton& skeleton, std::size_t prior_frames,
+                std::vector<motion::Vec3>& positions) {
+  const std::size_t joints = skeleton.size();
+  const double height = view::detail::standing_height(skeleton, 0);
+  double floor = positions.front()[1];
+  for (std::size_t i = 0; i < prior_frames * joints; ++i) floor = std::min(floor, positions[i][1]);
+  bool any = false;
+  const auto bring = [&](double& value, double low, double high) {
+    const double near = value >= low ? std::min(value, high) : low;  // a value that is no number is low too
+    any = any || near != value;
+    value = near;
+  };
+  for (std::size_t f = prior_frames * joints; f < positions.size(); f += joints) {
+    const motion::Vec3 before = positions[f - joints];
+    for (const std::size_t a : {0u, 2u}) bring(positions[f][a], before[a] - height, before[a] + height);
+    for (std::size_t j = 0; j < joints; ++j) {
+      motion::Vec3& p = positions[f + j];
+      bring(p[1], floor - 0.25 * height, floor + 1.75 * height);
+      for (const std::size_t a : {0u, 2u}) bring(p[a], positions[f][a] - height, positions[f][a] + height);
+    }
+  }
+  return any;
+}
+
 /// Rows of poses for both pictures: of each class the window that is followed by the most real frames.
 class Strips {
  public:
@@ -82,10 +108,11 @@ class Strips {
   }
 
  private:
-  void add(std::size_t row, std::string_view title, std::span<const motion::Vec3> positions) {
-    rows_[row].push_back({fmt::format("{}: {}", titles_[row], title),
-                          as_drawn(data_.format.skeleton(), data_.format.rate, positions),
-                          data_.format.frames});
+  void add(std::size_t row, std::string_view title, std::vector<motion::Vec3> positions) {
+    const bool left = bring_near(data_.format.skeleton(), data_.format.frames, positions);
+    rows_[row].push_back(
+        {fmt::format("{}: {}{}", titles_[row], title, left ? ", cut where it leaves the picture" : ""),
+         as_drawn(data_.format.skeleton(), data_.format.rate, positions), data_.format.frames});
   }
 
   const motion::ActionDataset& data_;
@@ -128,10 +155,10 @@ void print_tables(const ActionEvaluation& evaluation, std::span<const AblationRe
                                  short_length(m.step),
                                  number(m.speed)};
     if (const auto& l = r.long_run)
-      row.insert(row.end(),
-                 {number(l->bone_error), short_length(l->step), number(l->speed), number(l->distance)});
+      row.insert(row.end(), {number(l->bone_error), short_length(l->step), number(l->speed),
+                             number(l->distance), fmt::format("{:.0f}%", 100 * l->broken)});
     else
-      row.insert(row.end(), 4, "");
+      row.insert(row.end(), 5, "");
     motions.push_back(row);
   };
   add({"truth", evaluation.truth()}, "");
@@ -154,8 +181,8 @@ void print_tables(const ActionEvaluation& evaluation, std::span<const AblationRe
       "s\n",
       metres ? "" : " (lengths in the file's unit; --unit-metres gives metres)", brief(long_seconds));
   print_table({"", "bones %", "seam" + small, "body" + small, "step" + small, "speed" + large + "/s",
-               "30 s: bones %", "step" + small, "speed" + large + "/s", "from start" + large},
-              motions, "lrrrrrrrrr", "  ");
+               "30 s: bones %", "step" + small, "speed" + large + "/s", "from start" + large, "broken"},
+              motions, "lrrrrrrrrrr", "  ");
 }
 
 /// How many iterations a run's model has had; 0 where its checkpoint is not there.
@@ -221,8 +248,6 @@ void report_variants(const Context& context, const motion::ActionDataset& data, 
                                      .height = 620}));
   measure("still", "", stand_still(data.format));
   write_table(save / "table.csv", evaluation, results, metres);
-  strips.write(save / "strip_10s.png", 10);
-  strips.write(save / "strip_30s.png", long_seconds);
 
   print_tables(evaluation, results, metres);
   if (!claims.empty())
@@ -233,6 +258,8 @@ void report_variants(const Context& context, const motion::ActionDataset& data, 
                : claim.verdict == Verdict::no ? "no"
                                               : "even",
                claim.claim, claim.evidence);
+  strips.write(save / "strip_10s.png", 10);
+  strips.write(save / "strip_30s.png", long_seconds);
   fmt::print("\nwrote table.csv, angles.csv, angles.png, strip_10s.png and strip_30s.png in {}\n",
              shown(save));
 }

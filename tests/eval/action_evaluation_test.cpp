@@ -168,6 +168,14 @@ TEST_CASE("models that do a known wrong") {
       }));
   CHECK(longer.bone_error == doctest::Approx(5).epsilon(1e-3));
   CHECK(longer.curve_error < 1e-2);
+  CHECK(longer.broken == 0);
+  // One window in six falls apart, in its last four frames alone: thighs are three times too long.
+  const ActionMeasures apart =
+      evaluation.measure(truth_with(evaluation, [](std::size_t i, std::size_t f, Vec3* pose) {
+        if (i != 2 || f < 6) return;
+        for (const std::size_t j : {1u, 2u}) pose[j] = motion::add(pose[j], {0, -4, 0});
+      }));
+  CHECK(apart.broken == doctest::Approx(1 / 6.0));
 
   // Feet that jump 3 up at the beginning of the second second and stay there: one seam of three (frames 0, 4
   // and 8) by 3 in one joint of three, besides what the body does anyway.

@@ -101,7 +101,7 @@ inline void write_table(const std::filesystem::path& path, const ActionEvaluatio
       "window_error_deg,window_error_deviation_deg,bone_error_percent,seam",
       small, ",seam_body", small, ",first_seam", small, ",step", small, ",speed", large, "_per_s,distance",
       large, ",bone_error_percent_long,seam", small, "_long,step", small, "_long,speed", large,
-      "_per_s_long,distance", large, "_long\n");
+      "_per_s_long,distance", large, "_long,broken_share_long\n");
   const auto row = [&](const AblationResult& r) {
     const ActionMeasures& m = r.measures;
     text +=
@@ -111,9 +111,9 @@ inline void write_table(const std::filesystem::path& path, const ActionEvaluatio
                ',', factor * m.first_seam, ',', factor * m.step, ',', m.speed, ',', m.distance);
     if (const auto& l = r.long_run)
       text += concat(',', l->bone_error, ',', factor * l->seam, ',', factor * l->step, ',', l->speed, ',',
-                     l->distance, '\n');
+                     l->distance, ',', l->broken, '\n');
     else
-      text += ",,,,,\n";
+      text += ",,,,,,\n";
   };
   row({"truth", evaluation.truth()});
   for (const AblationResult& r : results) row(r);

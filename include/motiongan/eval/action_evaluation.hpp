@@ -81,6 +81,9 @@ struct ActionMeasures {
   double window_error = 0;
   double window_error_deviation = 0;  ///< standard deviation of that between windows
   double bone_error = 0;              ///< | length / length in the prior's first frame - 1 |, in percent
+  /// Share of windows whose bones are off by more than 100% over the last T frames: made motion that has
+  /// fallen apart. A few of them decide all means of a long run.
+  double broken = 0;
   /// Mean step of the joints at the ends of seconds: from the prior to the first frame made, and where a
   /// generator was fed its own output. The real motion has a step there too: its row has it.
   double seam = 0;
@@ -195,6 +198,9 @@ class ActionEvaluation {
       }
       errors.push_back(error);
       out.bone_error += bone_length_error(format().skeleton(), future, both.first(joints)) / count;
+      const auto last_part = future.last(std::min(frames, length) * joints);
+      const double at_last = bone_length_error(format().skeleton(), last_part, both.first(joints));
+      out.broken += (at_last <= 100 ? 0 : 1) / count;  // a value that is no number is broken too
       const std::size_t seams = (frames + length - 1) / length;
       for (std::size_t s = 1; s <= seams; ++s) {
         const FrameStep jump = seam_jump(both.subspan((s * length - 1) * joints, joints),
