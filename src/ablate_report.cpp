@@ -175,10 +175,12 @@ void print_tables(const ActionEvaluation& evaluation, std::span<const AblationRe
               "  ");
   const std::string small = metres ? " mm" : "", large = metres ? " m" : "";
   fmt::print(
-      "\nmotion{}: how far bones are from their length in the prior, mean step of the joints where seconds "
-      "meet "
-      "(seam;\nbody: without the root's step) and median step anywhere, speed of the root; the same over {} "
-      "s\n",
+      "\nmotion{}: how far bones are from their length in the prior; mean step of the joints where seconds "
+      "meet\n"
+      "(seam; body: without the root's step), median step anywhere, speed of the root. The same over {} s, "
+      "with how\n"
+      "far the root got, and the share of motions whose bones are off by more than 100% in the last second: "
+      "broken\n",
       metres ? "" : " (lengths in the file's unit; --unit-metres gives metres)", brief(long_seconds));
   print_table({"", "bones %", "seam" + small, "body" + small, "step" + small, "speed" + large + "/s",
                "30 s: bones %", "step" + small, "speed" + large + "/s", "from start" + large, "broken"},
