@@ -70,6 +70,8 @@
 #include "motiongan/sample/action_stream.hpp"
 #include "motiongan/sample/motion_stream.hpp"
 //
+#include "motiongan/eval/action_ablation.hpp"
+#include "motiongan/eval/action_evaluation.hpp"
 #include "motiongan/eval/augmentation_study.hpp"
 #include "motiongan/eval/drift.hpp"
 #include "motiongan/eval/euler_error.hpp"
