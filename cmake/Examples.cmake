@@ -4,6 +4,7 @@ foreach(source IN LISTS sources)
   get_filename_component(name "${source}" NAME_WE)
   set(target "example_${name}")
   own_program(${target} "${source}")
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)   # as the tests: sooner compiled, and none runs long
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/examples")
   if(MOTIONGAN_BUILD_TESTS)
     set(folder "${PROJECT_BINARY_DIR}/examples/run/${name}")
