@@ -119,7 +119,7 @@ class ActionEvaluation {
       real_.push_back(format().restore(poses.subspan(w.start * dof, (length + options.frames) * dof),
                                        std::span(clip.places).subspan(w.start, length + options.frames)));
     }
-    for (std::size_t i = 0; i < real_.size(); ++i) real_angles_.push_back(angles_of(future_of(real_[i])));
+    for (const auto& clip : real_) real_angles_.push_back(angles_of(future_of(clip)));
     truth_ = measure_positions(real_, true);
   }
 

@@ -33,7 +33,7 @@ class SkeletonLoss {
  private:
   /// Bone vectors [T, B, 3 * bones], or their lengths [T, B, bones].
   Var measured(const Var& motion) const {
-    const Var bones = taps(motion, map_, {0}, motion.dim(0), false, {.bias = shift_});
+    Var bones = taps(motion, map_, {0}, motion.dim(0), false, {.bias = shift_});
     if (vectors_) return bones;
     return sqrt(sum_last(square(reshape(bones, {motion.dim(0), motion.dim(1), bones_, 3}))) + 1e-12);
   }

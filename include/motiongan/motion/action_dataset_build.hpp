@@ -143,10 +143,9 @@ inline std::vector<bool> split(const std::vector<Chosen>& chosen, const ActionDa
   std::vector<SplitClip> clips;
   for (const Chosen& c : chosen) clips.push_back(c.what);
   const std::size_t classes = data.format.classes.size();
-  const std::vector<bool> is_train = !o.test_subjects.empty() ? split_off_subjects(clips, o.test_subjects)
-                                     : o.by_subject
-                                         ? split_by_subject(clips, classes, o.train_share, o.split_seed)
-                                         : split_by_class(clips, classes, o.train_share, o.split_seed);
+  std::vector<bool> is_train = !o.test_subjects.empty() ? split_off_subjects(clips, o.test_subjects)
+                               : o.by_subject ? split_by_subject(clips, classes, o.train_share, o.split_seed)
+                                              : split_by_class(clips, classes, o.train_share, o.split_seed);
   std::vector<bool> trained(classes, false);
   for (std::size_t i = 0; i < clips.size(); ++i)
     if (is_train[i]) trained[clips[i].label] = true;
