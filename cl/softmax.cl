@@ -29,19 +29,20 @@ kernel void log_softmax_rows(global const real* x, uint x0, global real* out, ui
   for (uint j = 0; j < count; ++j) q[j] = p[j] - shift;
 }
 
-/// Attention along time, sample by sample (Malek-Podjaski & Deligianni, eq. 1-3): out_j = sum over i of
-/// softmax_i(query_i . key_j) value_i. `all` [frames, batch, 3 * inner] holds query, key and value, out is
-/// [frames, batch, inner]; every group has `frames` numbers of `scores` for itself, a row of the map at a
-/// time. Groups of one item: x over samples, y over pieces of `rows` frames.
-__attribute__((reqd_work_group_size(1, 1, 1))) kernel void attend_frames(global const real* all, uint all0,
-                                                                         global real* scores, uint scores0,
-                                                                         global real* out, uint out0,
-                                                                         uint frames, uint batch, uint inner,
-                                                                         uint rows) {
+/// A layer of self-attention after its first product, sample by sample (Malek-Podjaski & Deligianni, eq.
+/// 1-3): o_j = sum over i of softmax_i(query_i . key_j) value_i, then out_j = x_j + bias + weight o_j and its
+/// ReLU. `all` [frames, batch, 3 * inner] holds query, key and value; x, out and rectified are [frames,
+/// batch, width]; weight is [inner, width]. Every group has frames + inner numbers of `scratch` for itself: a
+/// row of the map, and o_j. Groups of one item: x over samples, y over pieces of `rows` frames.
+__attribute__((reqd_work_group_size(1, 1, 1))) kernel void attend_frames(
+    global const real* all, uint all0, global real* scratch, uint scratch0, global const real* x, uint x0,
+    global const real* weight, uint weight0, global const real* bias, uint bias0, global real* out, uint out0,
+    global real* rectified, uint rectified0, uint frames, uint batch, uint inner, uint width, uint rows) {
   const uint b = get_group_id(0), step = batch * 3 * inner;
   const uint begin = get_group_id(1) * rows, end = min(frames, begin + rows);
   global const real* query = all + all0 + b * 3 * inner;
-  global real* p = scores + scores0 + (get_group_id(1) * batch + b) * frames;
+  global real* p = scratch + scratch0 + (get_group_id(1) * batch + b) * (frames + inner);
+  global real* o = p + frames;
   for (uint j = begin; j < end; ++j) {
     global const real* key = query + j * step + inner;
     real top = -INFINITY;
@@ -62,7 +63,17 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void attend_frames(global 
       realv mixed = 0;
       for (uint i = 0; i < frames; ++i, value += step)
         mixed = fma((realv)(p[i]), load_some(value, inner - c), mixed);
-      store_some(mixed / sum, out + out0 + (j * batch + b) * inner + c, inner - c);
+      store_some(mixed / sum, o + c, inner - c);
+    }
+    const uint row = (j * batch + b) * width;
+    for (uint h = 0; h < width; h += VW) {
+      const uint left = width - h;
+      realv sums = 0;
+      for (uint c = 0; c < inner; ++c)
+        sums = fma((realv)(o[c]), load_some(weight + weight0 + c * width + h, left), sums);
+      sums += load_some(bias + bias0 + h, left) + load_some(x + x0 + row + h, left);
+      store_some(sums, out + out0 + row + h, left);
+      store_some(sums < 0 ? (realv)0 : sums, rectified + rectified0 + row + h, left);
     }
   }
 }

@@ -29,7 +29,13 @@ class AttentionRollout {
           concat_axis({attention->query.weight, attention->key.weight, attention->value.weight}, 1),
           concat_axis({attention->query.bias, attention->key.bias, attention->value.bias}, 0));
       const auto scaled = [&](const Var& v) { return v * expand_scalar(attention->gamma, v.shape()); };
-      out_ = convolution(scaled(attention->out.weight), scaled(attention->out.bias));
+      // [inner, hidden]: the kernel goes along the hidden channels.
+      const std::vector<double> by_row = scaled(attention->out.weight).value().to_host<double>();
+      std::vector<double> turned(by_row.size());
+      const std::size_t hidden = options_.hidden;
+      for (std::size_t i = 0; i < turned.size(); ++i) turned[i] = by_row[i % hidden * inner_ + i / hidden];
+      out_weight_ = Tensor::from(context_, {inner_, hidden}, turned);
+      out_bias_ = scaled(attention->out.bias).value();
     }
   }
 
@@ -109,20 +115,17 @@ class AttentionRollout {
       call.rectified = rectified_, call.rectified_offset = batch * hidden;
     };
     rectify(encode_);
-    rectify(inner_ > 0 ? out_ : second_[0]);
+    if (inner_ == 0) rectify(second_[0]);  // else the attention does
     for (GemmCall& call : first_) place(call, rectified_, between_, batch * hidden);
     place(second_[0], between_, other_, 0);
     add(second_[0], state_);
     if (inner_ > 0) {
       parts_to_ = Tensor(context_, {rows, 3 * inner_});
-      mixed_ = Tensor(context_, {rows, inner_});
       place(parts_, other_, parts_to_, 0);
-      place(out_, mixed_, state_, 0);
-      add(out_, other_);
       // Pieces of a sample's frames, so that few samples keep all cores busy.
       const std::size_t groups = 4 * context_.device().compute_units;
       pieces_ = std::clamp<std::size_t>((groups + batch - 1) / batch, 1, frames);
-      scores_ = Tensor(context_, {pieces_, batch, frames});
+      scratch_ = Tensor(context_, {pieces_, batch, frames + inner_});
     }
     place(second_[1], between_, rectified_, batch * hidden);
     add(second_[1], inner_ > 0 ? state_ : other_);
@@ -134,19 +137,20 @@ class AttentionRollout {
     gemm(context_, parts_);
     const std::size_t rows = (frames_ + pieces_ - 1) / pieces_;
     context_.launch("softmax", "attend_frames", Grid::groups(batch_, (frames_ + rows - 1) / rows), parts_to_,
-                    scores_, mixed_, frames_, batch_, inner_, rows);
-    gemm(context_, out_);
+                    scratch_, other_, out_weight_, out_bias_, state_,
+                    detail::At{rectified_, batch_ * options_.hidden}, frames_, batch_, inner_,
+                    options_.hidden, rows);
   }
 
   AttentionGeneratorOptions options_;
   Context context_;
-  GemmCall encode_, decode_, parts_, out_;
+  GemmCall encode_, decode_, parts_;
   std::array<GemmCall, 2> first_, second_;  // of the two residual blocks
   std::size_t inner_ = 0;                   // channels of query, key and value; 0: no attention
   std::size_t frames_ = 0, batch_ = 0, pieces_ = 1;
   Tensor rows_, rectified_, between_;  // [frames + 2, batch, channels], first and last frame zero
   Tensor state_, other_;               // [frames * batch, hidden]
-  Tensor parts_to_, mixed_, scores_;
+  Tensor parts_to_, scratch_, out_weight_, out_bias_;
 };
 
 }  // namespace motiongan
