@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
+#include "motiongan/motion/tab_lines.hpp"
 #include "motiongan/motion/text_file.hpp"
 
 namespace motiongan::motion {
@@ -22,30 +23,19 @@ using ActionLabels = std::map<std::string, std::string, std::less<>>;
 /// may stand twice. Errors are `name:line: ...`: no tab, no id, no label, a clip with two labels, text that
 /// is not UTF-8.
 inline ActionLabels parse_action_labels(std::string_view text, std::string_view name) {
-  constexpr std::string_view blanks = " \t\r\v\f";
-  const auto trim = [&](std::string_view s) {
-    const std::size_t first = s.find_first_not_of(blanks);
-    return first == s.npos ? std::string_view() : s.substr(first, s.find_last_not_of(blanks) - first + 1);
-  };
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   ActionLabels out;
   std::map<std::string, std::size_t, std::less<>> lines;  // where each clip was labelled
-  for (std::size_t line = 1; !text.empty(); ++line) {
-    const std::string_view raw = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(text.size(), raw.size() + 1));
-    if (trim(raw).empty() || trim(raw).front() == '#') continue;
-    require(is_utf8(raw), name, ":", line, ": found text that is not UTF-8; save the file as UTF-8");
-    const std::size_t tab = raw.find('\t');
-    require(tab != raw.npos, name, ":", line, ": found no tab in '", trim(raw).substr(0, 60),
-            "', expected clip id <TAB> label");
-    const std::string id(trim(raw.substr(0, tab))), label(trim(raw.substr(tab)));
-    require(!id.empty(), name, ":", line, ": found no clip id before the tab");
-    require(!label.empty(), name, ":", line, ": clip '", id, "' has no label after the tab");
-    const std::size_t first = lines.emplace(id, line).first->second;
+  for_each_tab_line(text, name, "clip id <TAB> label", [&](const TabLine& line) {
+    require(is_utf8(line.raw), name, ":", line.number,
+            ": found text that is not UTF-8; save the file as UTF-8");
+    const std::string id(line.before), label(line.after);
+    require(!id.empty(), name, ":", line.number, ": found no clip id before the tab");
+    require(!label.empty(), name, ":", line.number, ": clip '", id, "' has no label after the tab");
+    const std::size_t first = lines.emplace(id, line.number).first->second;
     const std::string& known = out.emplace(id, label).first->second;
-    require(known == label, name, ":", line, ": clip '", id, "' has the label '", label, "', but in line ",
-            first, " '", known, "'; a clip has one label");
-  }
+    require(known == label, name, ":", line.number, ": clip '", id, "' has the label '", label,
+            "', but in line ", first, " '", known, "'; a clip has one label");
+  });
   return out;
 }
 

@@ -15,6 +15,7 @@
 #include "motiongan/motion/kinematics.hpp"
 #include "motiongan/motion/rotation.hpp"
 #include "motiongan/motion/skeleton.hpp"
+#include "motiongan/motion/tab_lines.hpp"
 #include "motiongan/motion/text_file.hpp"
 
 namespace motiongan::motion {
@@ -24,40 +25,28 @@ namespace motiongan::motion {
 /// see with_offsets_of. Errors are `name:line: ...`: no tab, a name twice, a parent that has not been named
 /// before, a second root.
 inline Skeleton parse_bone_list(std::string_view text, std::string_view name) {
-  constexpr std::string_view blanks = " \t\r\v\f";
-  const auto trim = [&](std::string_view s) {
-    const std::size_t first = s.find_first_not_of(blanks);
-    return first == s.npos ? std::string_view() : s.substr(first, s.find_last_not_of(blanks) - first + 1);
-  };
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   Skeleton out;
-  for (std::size_t line = 1; !text.empty(); ++line) {
-    const std::string_view raw = text.substr(0, text.find('\n'));
-    text.remove_prefix(std::min(text.size(), raw.size() + 1));
-    if (trim(raw).empty() || trim(raw).front() == '#') continue;
-    const std::size_t tab = raw.find('\t');
-    require(tab != raw.npos, name, ":", line, ": found no tab in '", trim(raw).substr(0, 60),
-            "', expected joint <TAB> parent (- for the root)");
-    const std::string_view joint = trim(raw.substr(0, tab)), parent = trim(raw.substr(tab));
-    require(!joint.empty() && joint != "-", name, ":", line, ": found '", joint,
+  for_each_tab_line(text, name, "joint <TAB> parent (- for the root)", [&](const TabLine& line) {
+    const auto [joint, parent] = std::pair{line.before, line.after};
+    require(!joint.empty() && joint != "-", name, ":", line.number, ": found '", joint,
             "' before the tab, expected a joint's name");
-    require(!parent.empty() && parent.find('\t') == parent.npos, name, ":", line, ": joint '", joint,
+    require(!parent.empty() && parent.find('\t') == parent.npos, name, ":", line.number, ": joint '", joint,
             "' has the parent '", parent, "', expected one joint's name, or - for the root");
-    require(out.find(joint) < 0, name, ":", line, ": joint '", joint,
+    require(out.find(joint) < 0, name, ":", line.number, ": joint '", joint,
             "' was named before; names must differ");
     Joint entry;
     entry.name = joint;
     if (parent == "-") {
-      require(out.size() == 0, name, ":", line, ": found a second root, '", joint,
+      require(out.size() == 0, name, ":", line.number, ": found a second root, '", joint,
               "'; expected one root, in the first line");
     } else {
       entry.parent = out.find(parent);
       require(
-          entry.parent >= 0, name, ":", line, ": joint '", joint, "' has the parent '", parent,
+          entry.parent >= 0, name, ":", line.number, ": joint '", joint, "' has the parent '", parent,
           "', which no line above names; parents stand before their children, and the root's parent is -");
     }
     out.joints.push_back(std::move(entry));
-  }
+  });
   require(out.size() > 0, name, ": found no joints, expected lines of joint <TAB> parent (- for the root)");
   return out;
 }
