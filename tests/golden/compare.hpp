@@ -6,6 +6,7 @@
 #include <motiongan/models/rnn_generator.hpp>
 
 #include "compare_attention.hpp"
+#include "compare_ranker.hpp"
 
 namespace motiongan::golden {
 namespace detail {
@@ -107,10 +108,14 @@ inline Report compare(const std::filesystem::path& path) {
     detail::attention_classifier(file, context, outputs, gradients);
   else if (report.model == "lstm_baseline")
     detail::lstm_baseline(file, context, outputs, gradients);
+  else if (report.model == "cnn_ranker")
+    detail::ranker<CnnRanker>(file, context, outputs, gradients);
+  else if (report.model == "rnn_ranker")
+    detail::ranker<RnnRanker>(file, context, outputs, gradients);
   else
     throw Error(file.where(), ": no comparison for a model called \"", report.model,
                 "\"; there are: cnn_generator, rnn_generator, cnn_critic, rnn_critic, attention_generator, "
-                "attention_critic, attention_classifier, lstm_baseline");
+                "attention_critic, attention_classifier, lstm_baseline, cnn_ranker, rnn_ranker");
   add_errors(report, outputs);
   add_errors(report, gradients);
   report.outputs = outputs.size();

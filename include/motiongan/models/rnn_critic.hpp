@@ -1,9 +1,9 @@
 // The RNN critic of DVGAN: poses judged one by one, and their changes through an LSTM (Lin & Amer, eq. 10;
 // SPEC 3).
 #pragma once
+#include "motiongan/models/difference_lstm.hpp"
 #include "motiongan/models/validate.hpp"
 #include "motiongan/nn/text_encoder.hpp"
-#include "motiongan/ops/matmul.hpp"
 
 namespace motiongan {
 
@@ -42,15 +42,15 @@ class RnnCritic {
   Var operator()(const Var& motion, const Var& h_txt) const {
     require(motion.value().rank() == 3 && motion.dim(0) >= 2 && motion.dim(2) == options_.dof,
             "RnnCritic: motion ", motion.shape(), ", expected [2 or more frames, batch, ", options_.dof, "]");
-    const std::size_t frames = motion.dim(0), batch = motion.dim(1);
+    const std::size_t batch = motion.dim(1);
     const Var text = reshape(h_txt, {1, batch, options_.hidden});
-    const Var differences = slice(motion, 0, 1, frames - 1) - slice(motion, 0, 0, frames - 1);
+    const Var differences = frame_differences(motion);
     // `frame` and `diff` are linear and so is what sees their results: poses and differences enter by the
     // product of both layers' weights. A pose has fewer numbers than a hidden state.
     const Var of_frames = judge(frame_validate_, motion, text, frame_);
     const Var of_differences = options_.diff_input == DiffInput::difference
                                    ? judge(diff_validate_, differences, text, diff_)
-                                   : diff_validate_(hidden(differences), text);
+                                   : diff_validate_(difference_lstm(diff_, lstm_, differences), text);
     const Var both = reshape(concat_axis({of_frames, of_differences}, 2), {batch, 2});
     return reshape(matmul(both, reshape(weights_, {2, 1})), {batch});
   }
@@ -74,25 +74,6 @@ class RnnCritic {
     const Var of_bias = matmul(motion, reshape(first.bias, {k, 1}));
     return validate(x, text, reshape(matmul(motion, first.weight), {1, k, dof}),
                     reshape(of_bias, {k}) + validate.motion.bias);
-  }
-
-  /// The upper LSTM layer's h over the differences: [N-1, B, M] -> [N-1, B, k].
-  Var hidden(const Var& differences) const {
-    const std::size_t k = options_.hidden;
-    Var h;
-    for (const Lstm::Layer& layer : lstm_.layers) {
-      const bool lowest = h.empty();
-      // `diff` and the lowest layer's input weights are both linear: one product does for both.
-      const Var weight = lowest ? matmul(layer.weight_ih, diff_.weight) : layer.weight_ih;
-      Var bias = layer.bias_ih + layer.bias_hh;
-      if (lowest)
-        bias = bias + reshape(matmul(reshape(diff_.bias, {1, k}), layer.weight_ih, false, true), {4 * k});
-      const Var& x = lowest ? differences : h;
-      h = lstm_hidden(
-          taps(x, reshape(weight, {1, 4 * k, weight.dim(1)}), {0}, x.dim(0), false, {.bias = bias}),
-          layer.weight_hh);
-    }
-    return h;
   }
 
   RnnCriticOptions options_;

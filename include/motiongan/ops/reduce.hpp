@@ -136,6 +136,12 @@ inline Var sum_frames(const Var& x, std::size_t times, double scale = 1) {
   return sum_middle(x, shape[0], times, x.size() / x.dim(0), scale, shape);
 }
 
+/// Rows of length 1, x / |x|: [rows, n] -> [rows, n]; a row of zeros stays one.
+inline Var normalize_rows(const Var& x) {
+  const std::size_t rows = x.dim(0), n = x.dim(1);
+  return x / expand(sqrt(sum_last(square(x)) + 1e-24), rows, n, 1, 1, {rows, n});
+}
+
 /// relu(big + small repeated): big is [count*T, ...], small [T, ...]. One pass instead of three.
 inline Var relu_of_sum(const Var& big, const Var& small) {
   require(big.size() % small.size() == 0 && big.size() / big.dim(0) * small.dim(0) == small.size(),

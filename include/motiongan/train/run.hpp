@@ -70,9 +70,10 @@ RunResult run_training(Trainer& trainer, const Data& data, std::size_t iteration
   const auto save = [&] {
     if (!keeps) return;
     save_checkpoint(trainer, files.checkpoint(), run.notes);
-    trainer.model().save(files.generator());
-    for (const TrainedPart& part : trainer.parts()) {
-      if (part.name == "generator") continue;
+    const std::vector<TrainedPart> parts = trainer.parts();  // of which the first is the model
+    trainer.model().save(files.network(parts.front().name));
+    for (const TrainedPart& part : parts) {
+      if (part.name == parts.front().name) continue;
       io::SafeTensors file;
       io::save_parameters(part.parameters, file);
       file.write(files.network(part.name));
