@@ -29,8 +29,7 @@ std::vector<std::vector<float>> state(AttentionTrainer& trainer) {
   std::vector<std::vector<float>> all;
   for (const TrainedPart& part : trainer.parts()) {
     for (const NamedParameter& p : part.parameters) all.push_back(p.value->value().to_host());
-    all.push_back(part.adam->mean().to_host());
-    all.push_back(part.adam->square().to_host());
+    for (const auto& [name, tensor] : part.optimizer->state()) all.push_back(tensor.to_host());
   }
   return all;
 }

@@ -66,7 +66,7 @@ using LossColumn = std::pair<const char*, double>;
 struct TrainedPart {
   std::string name;  ///< what its tensors are called by in a checkpoint
   std::vector<NamedParameter> parameters;
-  Adam* adam = nullptr;
+  Optimizer* optimizer = nullptr;
 };
 
 /// Writes the run's state: all networks, all optimisers, the position. Random numbers have no state: they are
@@ -78,9 +78,10 @@ void save_checkpoint(Trainer& trainer, const std::filesystem::path& path, const 
   trainer.model().describe(file);
   for (const TrainedPart& part : trainer.parts()) {
     io::save_parameters(part.parameters, file, part.name + ".");
-    file.tensors[concat("adam.", part.name, ".mean")] = detail::host_copy(part.adam->mean());
-    file.tensors[concat("adam.", part.name, ".square")] = detail::host_copy(part.adam->square());
-    file.metadata[concat("adam.", part.name, ".steps")] = std::to_string(part.adam->steps());
+    const std::string prefix = concat(part.optimizer->name(), ".", part.name, ".");
+    for (const auto& [name, tensor] : part.optimizer->state())
+      file.tensors[prefix + name] = detail::host_copy(tensor);
+    file.metadata[prefix + "steps"] = std::to_string(part.optimizer->steps());
   }
   file.metadata["training"] = to_json(trainer.options()).dump();
   file.metadata["iteration"] = std::to_string(trainer.iteration());
@@ -115,19 +116,19 @@ void load_checkpoint(Trainer& trainer, const std::filesystem::path& path) {
   const std::size_t iteration = detail::checkpoint_number(file, "iteration", where);
   // All tensors in one list: when one of them is wrong, nothing has changed.
   const std::vector<TrainedPart> parts = trainer.parts();
-  std::list<Var> moments;
+  std::list<Var> state;
   std::vector<NamedParameter> all;
   std::vector<std::size_t> steps;
   for (const TrainedPart& part : parts) {
     for (const NamedParameter& p : part.parameters)
       all.push_back({part.name + "." + p.name, p.value, p.layout});
-    all.push_back({"adam." + part.name + ".mean", &moments.emplace_back(Var::constant(part.adam->mean()))});
-    all.push_back(
-        {"adam." + part.name + ".square", &moments.emplace_back(Var::constant(part.adam->square()))});
-    steps.push_back(detail::checkpoint_number(file, concat("adam.", part.name, ".steps"), where));
+    const std::string prefix = concat(part.optimizer->name(), ".", part.name, ".");
+    for (const auto& [name, tensor] : part.optimizer->state())
+      all.push_back({prefix + name, &state.emplace_back(Var::constant(tensor))});
+    steps.push_back(detail::checkpoint_number(file, prefix + "steps", where));
   }
   io::load_parameters(all, file, where);
-  for (std::size_t i = 0; i < parts.size(); ++i) parts[i].adam->set_steps(steps[i]);
+  for (std::size_t i = 0; i < parts.size(); ++i) parts[i].optimizer->set_steps(steps[i]);
   trainer.set_iteration(iteration);
 }
 

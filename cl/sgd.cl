@@ -1,0 +1,29 @@
+// Stochastic gradient descent with the gradient's norm over all parameters limited.
+
+/// out[s] = sum of squares of x in [s*chunk, (s+1)*chunk), in ascending order.
+kernel void squares_of_chunks(global const real* x, uint x0, global real* out, uint out0, uint n,
+                              uint chunk) {
+  const uint s = get_global_id(0), first = s * chunk;
+  if (first >= n) return;
+  const uint last = min(first + chunk, n);
+  realv sum = 0;
+  for (uint i = first; i < last; i += VW) {
+    const realv v = load_some(x + x0 + i, last - i);
+    sum += v * v;
+  }
+  out[out0 + s] = lane_sum(sum);
+}
+
+/// parameter -= rate * gradient, the gradient shortened to `longest` where its norm is more; `square` is one
+/// number, the norm's square. 0 for longest: no limit.
+kernel void sgd(global real* parameter, uint parameter0, global const real* gradient, uint gradient0,
+                global const real* square, uint square0, uint n, real rate, real longest) {
+  const uint i = (uint)get_global_id(0) * VW;
+  if (i >= n) return;
+  const uint left = n - i;
+  const real norm = longest > 0 ? sqrt(square[square0]) : (real)0;
+  const real scale = norm > longest ? longest / norm : (real)1;
+  store_some(load_some(parameter + parameter0 + i, left) -
+                 rate * (load_some(gradient + gradient0 + i, left) * scale),
+             parameter + parameter0 + i, left);
+}

@@ -1,0 +1,33 @@
+// PyTorch's GRU of one layer.
+#pragma once
+#include <cmath>
+
+#include "motiongan/nn/module.hpp"
+
+namespace motiongan {
+
+/// Gates r, z, n: r, z = sigmoid(W_i x + b_i + W_h h + b_h), n = tanh(W_i x + b_i + r (W_h h + b_h)),
+/// h' = (1 - z) n + z h. Every weight U(+-1/sqrt(k)).
+struct Gru {
+  Var weight_ih, weight_hh, bias_ih, bias_hh;  // [3k, in], [3k, k], [3k], [3k]
+
+  Gru() = default;
+  Gru(Initializer& init, std::size_t in, std::size_t k) {
+    const double bound = 1 / std::sqrt(static_cast<double>(k));
+    weight_ih = init.uniform({3 * k, in}, bound);
+    weight_hh = init.uniform({3 * k, k}, bound);
+    bias_ih = init.uniform({3 * k}, bound);
+    bias_hh = init.uniform({3 * k}, bound);
+  }
+
+  std::size_t hidden() const { return weight_hh.dim(1); }
+
+  void list_parameters(ParameterList& list) {
+    list.add("weight_ih_l0", weight_ih);
+    list.add("weight_hh_l0", weight_hh);
+    list.add("bias_ih_l0", bias_ih);
+    list.add("bias_hh_l0", bias_hh);
+  }
+};
+
+}  // namespace motiongan

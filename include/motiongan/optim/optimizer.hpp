@@ -1,0 +1,75 @@
+// What all optimisers share: the parameters in one buffer, so that one launch updates them all.
+#pragma once
+#include <utility>
+
+#include "motiongan/nn/module.hpp"
+#include "motiongan/ops/layout.hpp"
+
+namespace motiongan {
+
+/// Owns the parameters' storage: they become pieces of one buffer.
+class Optimizer {
+ public:
+  virtual ~Optimizer() = default;
+  Optimizer(const Optimizer&) = delete;
+  Optimizer& operator=(const Optimizer&) = delete;
+
+  /// As it is called in checkpoints and errors.
+  virtual const char* name() const = 0;
+  /// What it remembers from step to step beside their number, for checkpoints: names and device tensors of
+  /// all parameters one after the other.
+  virtual std::vector<std::pair<std::string, Tensor>> state() const = 0;
+
+  const std::vector<Var>& parameters() const { return parameters_; }
+  std::size_t steps() const { return steps_; }
+  void set_steps(std::size_t steps) { steps_ = steps; }
+
+  /// One update. `gradients` are those of parameters(), in order. Error, and nothing changes, where they do
+  /// not fit.
+  void step(const std::vector<Var>& gradients) {
+    require(gradients.size() == parameters_.size(), title_, ": ", gradients.size(), " gradients for ",
+            parameters_.size(), " parameters");
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < gradients.size(); ++i) {
+      require(gradients[i].shape() == parameters_[i].shape(), title_, ": gradient ", i, " has shape ",
+              gradients[i].shape(), ", the parameter ", parameters_[i].shape());
+      detail::copy_tensor(gradients[i].value(), gradients_.view(at, gradients[i].shape()));
+      at += gradients[i].size();
+    }
+    ++steps_;
+    update();
+  }
+
+ protected:
+  /// `title` names the optimiser in errors.
+  Optimizer(const char* title, const std::vector<NamedParameter>& parameters)
+      : title_(title), parameters_(values_of(parameters)) {
+    require(!parameters.empty(), title, ": no parameters");
+    const Context context = parameters_[0].context();
+    const std::size_t n = parameter_count(parameters);
+    values_ = Tensor(context, {n});
+    gradients_ = filled(context, {n}, 0);
+    std::size_t at = 0;
+    for (const Var& p : parameters_) {
+      const Tensor place = values_.view(at, p.shape());
+      detail::copy_tensor(p.value(), place);
+      p.node()->value = place;
+      at += p.size();
+    }
+  }
+
+  /// Moves values() by gradients(); steps() counts this step already.
+  virtual void update() = 0;
+
+  const Tensor& values() const { return values_; }        // all parameters, [n]
+  const Tensor& gradients() const { return gradients_; }  // likewise
+  const Context& context() const { return values_.context(); }
+
+ private:
+  const char* title_;
+  std::vector<Var> parameters_;
+  Tensor values_, gradients_;
+  std::size_t steps_ = 0;
+};
+
+}  // namespace motiongan

@@ -1,0 +1,58 @@
+// Stochastic gradient descent with a falling learning rate and a limit to the gradient's norm.
+#pragma once
+#include <cmath>
+
+#include "motiongan/optim/optimizer.hpp"
+
+namespace motiongan {
+
+/// Defaults are those of residual seq2seq (Martinez, Black & Romero 2017; SPEC 7.7).
+struct SgdOptions {
+  double learning_rate = 0.005;
+  double decay = 0.95;               ///< the learning rate is multiplied by this ...
+  std::size_t decay_every = 10'000;  ///< ... every so many steps; 0: never
+  double clip_norm = 5;              ///< the longest gradient, over all parameters together; 0: no limit
+};
+
+/// parameter -= rate * gradient. The gradient's norm stays on the device: nothing is read back.
+class Sgd : public Optimizer {
+ public:
+  explicit Sgd(const std::vector<NamedParameter>& parameters, SgdOptions options = {})
+      : Optimizer("Sgd", parameters), options_(options) {
+    require(options.learning_rate > 0 && options.decay > 0 && options.clip_norm >= 0, "Sgd: learning rate ",
+            options.learning_rate, ", decay ", options.decay, ", longest gradient ", options.clip_norm,
+            "; the first two must be above 0, the last not below");
+    const std::size_t n = values().size();
+    chunks_ = Tensor(context(), {(n + chunk - 1) / chunk});
+  }
+
+  const SgdOptions& options() const { return options_; }
+  const char* name() const override { return "sgd"; }
+  std::vector<std::pair<std::string, Tensor>> state() const override { return {}; }
+
+  /// The learning rate of the step after `done` steps.
+  double rate(std::size_t done) const {
+    if (options_.decay_every == 0) return options_.learning_rate;
+    return options_.learning_rate *
+           std::pow(options_.decay, static_cast<double>(done / options_.decay_every));
+  }
+
+ private:
+  static constexpr std::size_t chunk = 4096;  // numbers that one work-item sums
+
+  void update() override {
+    Tensor square = chunks_;
+    if (options_.clip_norm > 0) {
+      context().launch("sgd", "squares_of_chunks", Grid::items(chunks_.size()), gradients(), chunks_,
+                       gradients().size(), chunk);
+      square = detail::sum_middle_value(chunks_, 1, chunks_.size(), 1, 1, {1});
+    }
+    context().launch("sgd", "sgd", detail::vector_grid(values()), values(), gradients(), square,
+                     values().size(), Real{rate(steps() - 1)}, Real{options_.clip_norm});
+  }
+
+  SgdOptions options_;
+  Tensor chunks_;
+};
+
+}  // namespace motiongan
