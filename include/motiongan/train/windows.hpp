@@ -10,6 +10,7 @@ namespace motiongan {
 struct Batch {
   Tensor motion;
   Sentences text;
+  std::vector<std::size_t> clips;  ///< of the data set's training clips, which one each window is of
 };
 
 /// All training clips in one device buffer. A batch is a function of (seed, step) alone, so a resumed run
@@ -46,13 +47,16 @@ class WindowSampler {
         captions = windows.with(Stream::captions);
     std::vector<cl_int> rows;
     std::vector<std::vector<int>> sentences;
+    std::vector<std::size_t> drawn;
     for (std::uint32_t b = 0; b < size; ++b) {
-      const Clip& clip = clips_[random_below(windows, b, clips_.size())];
+      drawn.push_back(random_below(windows, b, clips_.size()));
+      const Clip& clip = clips_[drawn.back()];
       rows.push_back(static_cast<cl_int>(clip.first_row + random_below(windows, b, clip.starts, 1)));
       sentences.push_back(clip.sentences[random_below(captions, b, clip.sentences.size())]);
     }
     const std::size_t dof = poses_.dim(1);
-    Batch batch{Tensor(context_, {frames_, size, dof}), Sentences(context_, sentences, vocabulary_)};
+    Batch batch{Tensor(context_, {frames_, size, dof}), Sentences(context_, sentences, vocabulary_),
+                std::move(drawn)};
     context_.launch("layout", "gather_windows", Grid::items(frames_ * size), poses_, Indices(context_, rows),
                     relative_, batch.motion, frames_, size, dof, stride_, turning_.x, turning_.z,
                     turning_.yaw, Real{turning_.yaw_scale});
