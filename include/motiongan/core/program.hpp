@@ -26,6 +26,8 @@ inline const char* kernel_file(std::string_view name) {
   if (name == "lstm") return kernels::lstm;
   if (name == "random") return kernels::random;
   if (name == "adam") return kernels::adam;
+  if (name == "sgd") return kernels::sgd;
+  if (name == "search") return kernels::search;
   throw Error("there is no kernel file cl/", name, ".cl");
 }
 
