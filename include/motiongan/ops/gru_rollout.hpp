@@ -48,6 +48,129 @@ inline Var gru_rollout_composed(const Var& x_gates, const Var& each, const Var& 
   return concat_axis(motion, 0);
 }
 
+/// What the forward pass leaves for the derivative. S = n - 1 + frames steps.
+struct GruTrace {
+  std::size_t given, frames, batch, dof, k;
+  Tensor states;  // h before each step and after the last, [S + 1, B, k]
+  Tensor kept;    // r, z, n and the state's part of n, [S, B, 4k]
+  Tensor poses;   // the last one given, then those made, [frames + 1, B, M]
+
+  std::size_t steps() const { return given - 1 + frames; }
+  std::size_t state_at(std::size_t t) const { return t * batch * k; }
+  std::size_t gates_at(std::size_t t) const { return t * batch * 3 * k; }
+  std::size_t pose_at(std::size_t j) const { return j * batch * dof; }
+  Grid cells() const { return Grid::items(batch * vectors(states.context(), k)); }
+};
+
+/// A product of rows with W^T, or with W, W [out, in]; places and what is added are yet to be named.
+inline GemmCall product_with(const Tensor& w, bool transposed, std::size_t rows) {
+  GemmCall call{.m = rows, .n = w.dim(transposed ? 0 : 1), .k = w.dim(transposed ? 1 : 0), .b = w};
+  call.a_ld = call.k, call.b_ld = w.dim(1), call.c_ld = call.residual_ld = call.n;
+  call.b_transposed = transposed;
+  call.b_panels = pack_b(w.context(), call);  // the same in every step: packed once for all
+  return call;
+}
+
+inline GruTrace gru_rollout_forward(const Tensor& x_gates, const Tensor& each, const Tensor& last,
+                                    const GruRolloutWeights& w, std::size_t frames, bool keep) {
+  const Context& context = x_gates.context();
+  GruTrace t{x_gates.dim(0), frames, last.dim(0), last.dim(1), w.recurrent.dim(1), {}, {}, {}};
+  t.states = Tensor(context, {t.steps() + 1, t.batch, t.k});
+  t.kept = Tensor(context, {keep ? t.steps() : 1, t.batch, 4 * t.k});
+  t.poses = Tensor(context, {frames + 1, t.batch, t.dof});
+  const Tensor first = t.states.view(0, {t.batch, t.k});
+  context.launch("elementwise", "fill", vector_grid(first), first, first.size(), Real{0});
+  copy_tensor(last, t.poses.view(0, last.shape()));
+  const Tensor s(context, {t.batch, 3 * t.k}), x(context, {t.batch, 3 * t.k});
+  GemmCall recur = product_with(w.recurrent.value(), true, t.batch),
+           see = product_with(w.pose.value(), true, t.batch),
+           move = product_with(w.diff.value(), true, t.batch);
+  recur.a = t.states, recur.c = s, recur.bias = w.recurrent_bias.value();
+  see.a = t.poses, see.c = x, see.residual = each;
+  move.a = t.states, move.c = move.residual = t.poses, move.bias = w.diff_bias.value();
+  for (std::size_t i = 0; i < t.steps(); ++i) {
+    if (i >= t.given) {
+      see.a_offset[0] = t.pose_at(i - t.given + 1);
+      gemm(context, see);
+    }
+    recur.a_offset[0] = t.state_at(i);
+    gemm(context, recur);
+    context.launch("gru", "gru_cell", t.cells(),
+                   At{i < t.given ? x_gates : x, i < t.given ? t.gates_at(i) : 0}, s,
+                   At{t.states, t.state_at(i)}, At{t.kept, keep ? 4 * t.state_at(i) : 0},
+                   static_cast<cl_uint>(keep), At{t.states, t.state_at(i + 1)}, t.batch, t.k);
+    if (i + 1 < t.given) continue;
+    const std::size_t j = i + 1 - t.given;
+    move.a_offset[0] = t.state_at(i + 1);
+    move.residual_offset = t.pose_at(j);
+    move.c_offset = t.pose_at(j + 1);
+    gemm(context, move);
+  }
+  return t;
+}
+
+/// Gradients by x_gates, each, last, W_h, b_h, the pose's weights, Wd and bd of a rollout whose motion has
+/// gradient g [frames, B, M].
+inline std::vector<Var> gru_rollout_backward(const GruTrace& t, const Node& self, const Tensor& g,
+                                             const Needs& needs) {
+  const Context& context = g.context();
+  const std::size_t steps = t.steps(), own = t.frames - 1;  // steps that see a pose that was made
+  const Tensor poses(context, g.shape()), dx(context, {steps, t.batch, 3 * t.k}), ds(context, dx.shape()),
+      dh = filled(context, {t.batch, t.k}, 0);
+  copy_tensor(g, poses);  // becomes the whole gradients
+  GemmCall recur = product_with(self.inputs[3].value(), false, t.batch),
+           see = product_with(self.inputs[5].value(), false, t.batch),
+           move = product_with(self.inputs[6].value(), false, t.batch);
+  recur.a = ds, see.a = dx, move.a = poses;
+  recur.c = move.c = dh, see.c = see.residual = poses;
+  recur.accumulate = see.accumulate = move.accumulate = true;
+  for (std::size_t i = steps; i-- > 0;) {
+    if (i + 1 >= t.given) {
+      const std::size_t j = i + 1 - t.given;
+      if (j < own) {  // the pose was moved on, and seen by the next step
+        see.a_offset[0] = t.gates_at(i + 1);
+        see.c_offset = t.pose_at(j);
+        see.residual_offset = t.pose_at(j + 1);
+        gemm(context, see);
+      }
+      move.a_offset[0] = t.pose_at(j);
+      gemm(context, move);
+    }
+    context.launch("gru", "gru_cell_backward", t.cells(), At{t.kept, 4 * t.state_at(i)},
+                   At{t.states, t.state_at(i)}, dh, At{dx, t.gates_at(i)}, At{ds, t.gates_at(i)}, t.batch,
+                   t.k);
+    if (i == 0) break;  // the first state is zero
+    recur.a_offset[0] = t.gates_at(i);
+    gemm(context, recur);
+  }
+  // Weights: all steps in one product each.
+  const auto by_weight = [&](const Tensor& gradient, std::size_t first, const Tensor& rows,
+                             std::size_t first_row, std::size_t count) {
+    GemmCall call{.m = gradient.dim(2), .n = rows.dim(2), .k = count * t.batch, .a = gradient, .b = rows};
+    call.c = Tensor(context, {call.m, call.n});
+    call.a_ld = call.m, call.b_ld = call.c_ld = call.n, call.a_transposed = true;
+    call.a_offset[0] = first, call.b_offset[0] = first_row;
+    if (count == 0) call.a_offset[0] = call.b_offset[0] = 0;
+    gemm(context, call);
+    return Var::constant(call.c);
+  };
+  const auto sum_of = [&](const Tensor& rows, std::size_t n) {
+    return Var::constant(sum_middle_value(rows, 1, rows.size() / n, n, 1, {n}));
+  };
+  std::vector<Var> found(8);
+  if (needs[0]) found[0] = Var::constant(dx.view(0, {t.given, t.batch, 3 * t.k}));
+  if (needs[1] && own > 0)
+    found[1] = Var::constant(sum_middle_value(dx.view(t.gates_at(t.given), {own, t.batch, 3 * t.k}), 1, own,
+                                              t.batch * 3 * t.k, 1, {t.batch, 3 * t.k}));
+  if (needs[2]) found[2] = Var::constant(poses.view(0, {t.batch, t.dof}));
+  if (needs[3]) found[3] = by_weight(ds, 0, t.states, 0, steps);
+  if (needs[4]) found[4] = sum_of(ds, 3 * t.k);
+  if (needs[5]) found[5] = by_weight(dx, t.gates_at(t.given), t.poses, t.pose_at(1), own);
+  if (needs[6]) found[6] = by_weight(poses, 0, t.states, t.state_at(t.given), t.frames);
+  if (needs[7]) found[7] = sum_of(poses, t.dof);
+  return found;
+}
+
 }  // namespace detail
 
 /// The `frames` poses [frames, B, M] that follow `last` [B, M]. `x_gates` [n, B, 3k] is W_i x + b_i of the
@@ -63,7 +186,19 @@ inline Var gru_rollout(const Var& x_gates, const Var& each, const Var& last, con
           "gru_rollout: gates ", x_gates.shape(), " and ", each.shape(), ", last pose ", last.shape(),
           ", weights ", w.recurrent.shape(), ", ", w.pose.shape(), ", ", w.diff.shape(), ", ", frames,
           " frames");
-  return detail::gru_rollout_composed(x_gates, each, last, w, frames);
+  const detail::GruTrace trace = detail::gru_rollout_forward(x_gates.value(), each.value(), last.value(), w,
+                                                             frames, detail::recording());
+  return record("gru_rollout",
+                {x_gates, each, last, w.recurrent, w.recurrent_bias, w.pose, w.diff, w.diff_bias},
+                trace.poses.view(trace.pose_at(1), {frames, batch, dof}),
+                [trace](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
+                  if (!detail::recording())
+                    return detail::gru_rollout_backward(trace, self, g.value(), needs);
+                  return detail::partial_derivatives(self.inputs, g, needs, [&](const std::vector<Var>& in) {
+                    return detail::gru_rollout_composed(in[0], in[1], in[2],
+                                                        {in[3], in[4], in[5], in[6], in[7]}, trace.frames);
+                  });
+                });
 }
 
 }  // namespace motiongan
