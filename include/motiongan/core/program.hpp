@@ -24,6 +24,7 @@ inline const char* kernel_file(std::string_view name) {
   if (name == "gemm_packed") return kernels::gemm_packed;
   if (name == "softmax") return kernels::softmax;
   if (name == "lstm") return kernels::lstm;
+  if (name == "gru") return kernels::gru;
   if (name == "random") return kernels::random;
   if (name == "adam") return kernels::adam;
   if (name == "sgd") return kernels::sgd;
