@@ -23,7 +23,8 @@ std::vector<float> features() {
 TEST_CASE("all pairs, where there are no more than asked for: numpy's means") {
   CHECK(diversity(features(), 5, 28) == doctest::Approx(2.1071553342242493).epsilon(1e-6));
   CHECK(diversity(features(), 5) == doctest::Approx(2.1071553342242493).epsilon(1e-6));
-  CHECK(multimodality(features(), 5, 4) == doctest::Approx(1.9826365104944854).epsilon(1e-6));
+  CHECK(multimodality(features(), 5, std::vector<std::size_t>{0, 0, 0, 0, 1, 1, 1, 1}) ==
+        doctest::Approx(1.9826365104944854).epsilon(1e-6));
 }
 
 TEST_CASE("random pairs are near that, seeded, and never of a motion with itself") {
@@ -39,11 +40,15 @@ TEST_CASE("random pairs are near that, seeded, and never of a motion with itself
 }
 
 TEST_CASE("multimodality looks within descriptions alone") {
-  const std::vector<float> two{0, 0, 0, 9, 9, 9};  // one number each, three motions of each description
-  CHECK(multimodality(two, 1, 3) == 0);
+  const std::vector<float> two{0, 9, 0, 0, 9, 9};  // one number each
+  const std::vector<std::size_t> same{4, 7, 4, 4, 7, 7}, pairs{1, 5, 9, 1, 5, 2};
+  CHECK(multimodality(two, 1, same) == 0);
+  CHECK(multimodality(two, 1, pairs) == 0);
   CHECK(diversity(two, 1) == doctest::Approx(9 * 9 / 15.0));
   const std::vector<float> spread{0, 2, 9, 13};
-  CHECK(multimodality(spread, 1, 2) == doctest::Approx(3));
+  const std::vector<std::size_t> halves{0, 0, 1, 1}, most{3, 3, 3, 8};
+  CHECK(multimodality(spread, 1, halves) == doctest::Approx(3));
+  CHECK(multimodality(spread, 1, most) == doctest::Approx(6));  // 2, 9 and 7 apart; a single one is left out
 }
 
 TEST_CASE("what has no pairs is refused") {
@@ -51,6 +56,7 @@ TEST_CASE("what has no pairs is refused") {
   CHECK_THROWS_WITH_AS(diversity(set, 4), doctest::Contains("at least 2"), Error);
   CHECK_THROWS_WITH_AS(diversity(set, 3), doctest::Contains("rows of 3"), Error);
   CHECK_THROWS_WITH_AS(diversity(set, 2, 0), doctest::Contains("0 pairs"), Error);
-  CHECK_THROWS_WITH_AS(multimodality(set, 2, 1), doctest::Contains("expected at least 2"), Error);
-  CHECK_THROWS_WITH_AS(multimodality(set, 1, 3), doctest::Contains("expected 3 of each"), Error);
+  const std::vector<std::size_t> apart{0, 1}, three{0, 0, 0};
+  CHECK_THROWS_WITH_AS(multimodality(set, 2, apart), doctest::Contains("none of 2 descriptions"), Error);
+  CHECK_THROWS_WITH_AS(multimodality(set, 2, three), doctest::Contains("the descriptions of 3"), Error);
 }

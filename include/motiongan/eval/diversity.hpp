@@ -3,8 +3,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/motion/split.hpp"
@@ -64,25 +66,33 @@ inline double diversity(std::span<const float> features, std::size_t dimensions,
 }
 
 /// Multimodality: the same distance among motions of one description, mean over descriptions (Guo et al.
-/// 2020; S_l = 20 pairs each there). `features` [descriptions * samples, dimensions] holds the motions of the
-/// first description, then those of the second, and so on, `samples` of each. It is 0 for a generator that
-/// makes the same motion whatever the noise. Real motion has none unless descriptions have several clips.
-/// Error if the sizes do not fit or there are fewer than 2 samples.
-inline double multimodality(std::span<const float> features, std::size_t dimensions, std::size_t samples,
-                            std::size_t pairs = 20, std::uint64_t seed = 1) {
+/// 2020; S_l = 20 pairs each there). `features` are [n, dimensions], `descriptions` [n] says of which
+/// description each motion is; one that has a single motion is left out. It is 0 for a generator that makes
+/// the same motion whatever the noise. Error if the sizes do not fit or no description has two motions.
+inline double multimodality(std::span<const float> features, std::size_t dimensions,
+                            std::span<const std::size_t> descriptions, std::size_t pairs = 20,
+                            std::uint64_t seed = 1) {
   diversity_detail::check_samples(features, dimensions, pairs);
-  const std::size_t block = samples * dimensions;
-  require(samples >= 2, "found ", samples, " motions of each description, expected at least 2");
-  require(!features.empty() && features.size() % block == 0, "found the features of ",
-          features.size() / dimensions, " motions, expected ", samples, " of each description");
-  double sum = 0;
-  std::size_t descriptions = 0;
-  for (std::size_t at = 0; at < features.size(); at += block, ++descriptions) {
-    const auto [distances, count] =
-        diversity_detail::pair_distances(features.subspan(at, block), dimensions, pairs, seed);
-    sum += distances / static_cast<double>(count);
+  require(features.size() == dimensions * descriptions.size(), "found the features of ",
+          features.size() / dimensions, " motions and the descriptions of ", descriptions.size(),
+          ", expected as many");
+  std::map<std::size_t, std::vector<float>> by_description;
+  for (std::size_t i = 0; i < descriptions.size(); ++i) {
+    const std::span<const float> row = features.subspan(i * dimensions, dimensions);
+    std::vector<float>& rows = by_description[descriptions[i]];
+    rows.insert(rows.end(), row.begin(), row.end());
   }
-  return sum / static_cast<double>(descriptions);
+  double sum = 0;
+  std::size_t counted = 0;
+  for (const auto& [description, rows] : by_description) {
+    if (rows.size() < 2 * dimensions) continue;
+    const auto [distances, count] = diversity_detail::pair_distances(rows, dimensions, pairs, seed);
+    sum += distances / static_cast<double>(count);
+    ++counted;
+  }
+  require(counted > 0, "none of ", by_description.size(),
+          " descriptions has two motions; multimodality needs at least 2 of one");
+  return sum / static_cast<double>(counted);
 }
 
 }  // namespace motiongan

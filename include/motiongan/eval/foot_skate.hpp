@@ -45,9 +45,16 @@ struct FootSkate {
   }
 };
 
-/// The feet of a skeleton by their joints' names: the first toe ("LeftToeBase", "Toes_L"), or else foot, or
-/// else ankle of each side. Error, with the names that there are, where none are found.
-inline std::vector<std::size_t> find_feet(const motion::Skeleton& skeleton) {
+namespace foot_skate_detail {
+
+inline std::string joint_names(const motion::Skeleton& skeleton) {
+  std::string all;
+  for (const motion::Joint& joint : skeleton.joints) all += (all.empty() ? "" : ", ") + joint.name;
+  return all;
+}
+
+/// A left and a right foot, or nothing.
+inline std::vector<std::size_t> feet_by_name(const motion::Skeleton& skeleton) {
   std::vector<std::string> names;
   for (const motion::Joint& joint : skeleton.joints) {
     std::string& name = names.emplace_back(joint.name);
@@ -63,12 +70,26 @@ inline std::vector<std::size_t> find_feet(const motion::Skeleton& skeleton) {
     }
     if (left && right) return {*left, *right};
   }
-  std::string all;
-  for (const motion::Joint& joint : skeleton.joints) all += (all.empty() ? "" : ", ") + joint.name;
-  throw Error(
-      "no joints are called by a side and toe, foot or ankle (such as LeftToeBase, Toes_L); name the "
-      "feet yourself, as two of: ",
-      all);
+  return {};
+}
+
+}  // namespace foot_skate_detail
+
+/// Whether find_feet(skeleton) finds any.
+inline bool has_feet(const motion::Skeleton& skeleton) {
+  return !foot_skate_detail::feet_by_name(skeleton).empty();
+}
+
+/// The feet of a skeleton by their joints' names: the first toe ("LeftToeBase", "Toes_L"), or else foot, or
+/// else ankle of each side. Error, with the names that there are, where none are found.
+inline std::vector<std::size_t> find_feet(const motion::Skeleton& skeleton) {
+  std::vector<std::size_t> feet = foot_skate_detail::feet_by_name(skeleton);
+  require(
+      !feet.empty(),
+      "no joints are called by a side and toe, foot or ankle (such as LeftToeBase, Toes_L); name the feet "
+      "yourself, as two of: ",
+      foot_skate_detail::joint_names(skeleton));
+  return feet;
 }
 
 /// Joints by the names that options give, or find_feet. Error for a name that is not there.
@@ -78,11 +99,8 @@ inline std::vector<std::size_t> find_feet(const motion::Skeleton& skeleton,
   std::vector<std::size_t> out;
   for (const std::string& name : names) {
     const int at = skeleton.find(name);
-    if (at < 0) {
-      std::string all;
-      for (const motion::Joint& joint : skeleton.joints) all += (all.empty() ? "" : ", ") + joint.name;
-      throw Error("there is no joint '", name, "' to be a foot; the skeleton has: ", all);
-    }
+    require(at >= 0, "there is no joint '", name,
+            "' to be a foot; the skeleton has: ", foot_skate_detail::joint_names(skeleton));
     out.push_back(static_cast<std::size_t>(at));
   }
   return out;
