@@ -6,6 +6,7 @@
 #include <motiongan/models/rnn_generator.hpp>
 
 #include "compare_attention.hpp"
+#include "compare_prediction.hpp"
 #include "compare_ranker.hpp"
 
 namespace motiongan::golden {
@@ -112,10 +113,17 @@ inline Report compare(const std::filesystem::path& path) {
     detail::ranker<CnnRanker>(file, context, outputs, gradients);
   else if (report.model == "rnn_ranker")
     detail::ranker<RnnRanker>(file, context, outputs, gradients);
+  else if (report.model == "seq2seq")
+    detail::seq2seq(file, context, outputs, gradients);
+  else if (report.model == "erd")
+    detail::next_pose_model<Erd>(file, context, outputs, gradients);
+  else if (report.model == "lstm_3lr")
+    detail::next_pose_model<Lstm3lr>(file, context, outputs, gradients);
   else
     throw Error(file.where(), ": no comparison for a model called \"", report.model,
                 "\"; there are: cnn_generator, rnn_generator, cnn_critic, rnn_critic, attention_generator, "
-                "attention_critic, attention_classifier, lstm_baseline, cnn_ranker, rnn_ranker");
+                "attention_critic, attention_classifier, lstm_baseline, cnn_ranker, rnn_ranker, seq2seq, "
+                "erd, lstm_3lr");
   add_errors(report, outputs);
   add_errors(report, gradients);
   report.outputs = outputs.size();
