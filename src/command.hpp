@@ -24,6 +24,7 @@ using Job = std::function<int()>;
 void add_devices(CLI::App& app, Job& job);
 void add_train_dvgan(CLI::App& train, Job& job);
 void add_train_attention(CLI::App& train, Job& job);
+void add_train_ranker(CLI::App& train, Job& job);
 void add_generate(CLI::App& app, Job& job);
 void add_complete(CLI::App& app, Job& job);
 void add_augment(CLI::App& app, Job& job);
@@ -32,6 +33,7 @@ void add_view(CLI::App& app, Job& job);
 void add_synth(CLI::App& app, Job& job);
 void add_compare(CLI::App& app, Job& job);
 void add_ablate(CLI::App& app, Job& job);
+void add_evaluate(CLI::App& app, Job& job);
 void add_demo(CLI::App& app, Job& job);
 
 /// How this command was called, for lines that a reader is to type: "motiongan", or the path to it.

@@ -45,6 +45,7 @@ int run(int argc, char** argv) {
   train->require_subcommand(1);
   add_train_dvgan(*train, job);
   add_train_attention(*train, job);
+  add_train_ranker(*train, job);
   add_generate(app, job);
   add_complete(app, job);
   add_augment(app, job);
@@ -52,6 +53,7 @@ int run(int argc, char** argv) {
   add_view(app, job);
   add_compare(app, job);
   add_ablate(app, job);
+  add_evaluate(app, job);
   add_synth(app, job);
   add_demo(app, job);
   try {

@@ -14,11 +14,6 @@ int run_training(TrainArgs args, const CLI::App& verb) {
   const auto [folder, done] = begin_run(
       {.folder = args.folder, .save = args.save, .procedural = args.procedural, .resume = args.resume}, verb,
       take);
-  if (!args.folder.empty()) {
-    args.captions = captions_for(args.folder, args.captions).string();
-    args.folder = fs::absolute(args.folder).lexically_normal().string();
-    if (!args.captions.empty()) args.captions = fs::absolute(args.captions).lexically_normal().string();
-  }
   fill_in_choices(args);
   if (args.resume && done >= args.training.iterations) {
     fmt::print("{} has all its {} already; --iterations N asks for more\n", folder.string(),
@@ -75,39 +70,11 @@ void add_train_dvgan(CLI::App& train, Job& job) {
     return verb->add_option(name, member, text)->capture_default_str();
   };
   const CLI::Range below_one(0.0, 0.9999999, "0 .. 1");
-  verb->add_option("FOLDER", a.folder, "folder of BVH clips (and folders in it), or one clip")->type_name("");
-  verb->add_option("--captions", a.captions,
-                   "file of lines `clip id <TAB> description` [FOLDER/captions.tsv, else from file names]")
-      ->type_name("FILE");
-  verb->add_option("--procedural", a.procedural,
-                   "instead of FOLDER: train on so many clips of built-in motion")
-      ->expected(0, 1)
-      ->default_str("68")
-      ->type_name("CLIPS");
+  add_captioned_data_options(*verb, a);
   verb->add_option("--save", a.save, "folder of the run [save/NAME, NAME being the folder's]")
       ->type_name("DIR");
   verb->add_flag("--resume", a.resume,
                  "continue the run in --save; its options are those of its first start");
-
-  option("--frames", a.data.frames, "frames of a motion; a power of two where a network is a CNN")
-      ->check(positive())
-      ->group("Data");
-  option("--rate", a.data.rate, "frames per second")->check(positive())->group("Data");
-  verb->add_flag("--root-position,!--no-root-position", a.data.root_position,
-                 "learn where the root is, not only how it turns [on]")
-      ->group("Data");
-  option("--root-rotation", a.root_rotation,
-         "heading: place and turn, every motion starts facing the same way; velocity: steps and turns, for "
-         "motion without end; expmap: as the papers [auto: velocity for the RNN generator, else heading]")
-      ->check(CLI::IsMember({"auto", "heading", "velocity", "expmap"}))
-      ->group("Data");
-  option("--first-frame", a.first_frame,
-         "auto: drop T-poses put before the motion; keep; drop: the first frame")
-      ->check(CLI::IsMember({"auto", "keep", "drop"}))
-      ->group("Data");
-  option("--train-share", a.data.train_share, "share of the clips to train on; the rest is for testing")
-      ->group("Data");
-  option("--split-seed", a.data.split_seed, "which clips those are")->check(not_negative())->group("Data");
 
   option("--generator", a.generator,
          "cnn: a window at once, coarse to fine; rnn: frame by frame, for as long as one likes")
@@ -165,8 +132,7 @@ void add_train_dvgan(CLI::App& train, Job& job) {
       ->check(positive())
       ->group("Run");
   verb->callback([&job, args, verb] {
-    if (verb->count("--procedural") > 0 && verb->get_option("--procedural")->results().front().empty())
-      args->procedural = 68;
+    fill_in_procedural(*verb, *args);
     job = [args, verb] { return run_training(*args, *verb); };
   });
 }

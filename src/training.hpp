@@ -1,20 +1,16 @@
 // A training run as the command keeps it: what train and demo share.
 #pragma once
-#include "command.hpp"
+#include "captioned_data.hpp"
 #include "motiongan/train/train.hpp"
 #include "signals.hpp"
 
 namespace motiongan::command {
 
-struct TrainArgs {
+struct TrainArgs : CaptionedDataArgs {
   // What a run is. Kept in its checkpoint, so that --resume needs none of it.
-  std::string folder, captions;
-  std::size_t procedural = 0;  // clips of built-in motion; 0: the folder's
-  motion::DatasetOptions data;
   std::string generator = "cnn", critic = "cnn";
   bool final_cut = true;
-  std::string root_rotation = "auto", first_frame = "auto", validation = "dense", level_weights = "exp",
-              diff_input = "hidden";
+  std::string validation = "dense", level_weights = "exp", diff_input = "hidden";
   DvganOptions model;
   DvganTrainOptions training;
   // What only this start of it is.
@@ -36,8 +32,6 @@ void choose_defaults(TrainArgs& args, bool final_cut_given);
 /// Refuses windows that the networks cannot have.
 void fill_in_choices(TrainArgs& args);
 
-motion::Dataset load_data(const TrainArgs& args);
-void print_data(const motion::Dataset& data, const TrainArgs& args);
 void print_model(Dvgan& model);
 
 }  // namespace motiongan::command
