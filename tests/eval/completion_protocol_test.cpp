@@ -21,7 +21,7 @@ constexpr double near_float = 2e-6;  // files have seven digits
 CompletionData small_h36m() {
   const ExpmapFolder folder;
   testing::write_small_h36m(folder.path());
-  return CompletionData(motion::read_expmap_collection(folder.path(), {"walking", "eating"}));
+  return CompletionData(motion::read_expmap_collection(folder.path(), {.actions = {"walking", "eating"}}));
 }
 
 }  // namespace
@@ -42,7 +42,8 @@ TEST_CASE("training clips are every second row, normalised by all rows; constant
     for (std::size_t f = 0; f < 200; ++f) square += std::pow(swing(f, 7, phase) - mean, 2) / 1000;
   CHECK(data.normalizer().mean()[7] == doctest::Approx(mean).epsilon(near_float));
   CHECK(data.normalizer().std()[7] == doctest::Approx(std::sqrt(square)).epsilon(near_float));
-  const CompletionClip& clip = data.train()[1];
+  const CompletionClip& clip = data.train()[3];
+  CHECK(clip.label == 1);
   CHECK(clip.id == "S1/walking_2");
   CHECK(clip.frames == 100);
   CHECK(clip.poses[3 * 14 + 7] ==
@@ -58,6 +59,7 @@ TEST_CASE("tests alternate between the two files, at numpy's draws") {
   for (std::size_t i = 0; i < 8; ++i) {
     const CompletionTest& test = data.tests()[i];
     CHECK(test.action == 0);
+    CHECK(test.label == 1);
     CHECK(test.file == (i % 2 == 0 ? "S5/walking_1" : "S5/walking_2"));
     const auto start = static_cast<std::size_t>(random.randint(16, 175 - 150));
     CHECK(test.start == start);

@@ -61,18 +61,24 @@ TEST_CASE("Human3.6M's folders: subject 5 is for testing, both of its files; mis
   CHECK(all.test[2].text.frames == 350);
   CHECK(all.test[2].text.values[16] == doctest::Approx(testing::swing(1, 1, 1.8)).epsilon(1e-6));
 
-  const ExpmapCollection one = read_expmap_collection(folder.path(), {"walking"});
-  CHECK(ids_of(one.train) == std::vector<std::string>{"S1/walking_1", "S1/walking_2", "S11/walking_1"});
+  const ExpmapCollection one = read_expmap_collection(folder.path(), {.actions = {"walking"}});
+  CHECK(one.train.size() == 5);  // what is tested does not change what is trained on
+  CHECK(one.test.size() == 2);
+  CHECK(one.classes == all.classes);
+  const ExpmapCollection less = read_expmap_collection(folder.path(), {.train_actions = {"walking"}});
+  CHECK(less.test.size() == 4);
+  CHECK(ids_of(less.train) == std::vector<std::string>{"S1/walking_1", "S1/walking_2", "S11/walking_1"});
 
   const auto refused = [&](std::vector<std::string> actions, const std::string& why) {
-    const std::string found = message_of([&] { read_expmap_collection(folder.path(), actions); });
+    const std::string found =
+        message_of([&] { read_expmap_collection(folder.path(), {.actions = actions}); });
     CHECK_MESSAGE(says(found, why), found);
   };
   refused({"posing"}, "no test file of the action 'posing'");
   refused({"posing"}, "those that have one: eating, walking");
   refused({"walking", "walking"}, "asked for twice");
-  folder.write("S1/eating_1.txt", "1,2,3\n");
-  refused({"walking", "eating"}, "S1/eating_1.txt has 3 numbers a line");
+  folder.write("S1/walking_2.txt", "1,2,3\n");
+  refused({"walking", "eating"}, "S1/walking_2.txt has 3 numbers a line");
 }
 
 TEST_CASE("CMU's folders: the first test file of each action") {
@@ -82,12 +88,13 @@ TEST_CASE("CMU's folders: the first test file of each action") {
   const ExpmapCollection all = read_expmap_collection(folder.path());
   CHECK(all.layout == ExpmapLayout::cmu);
   CHECK(all.actions == std::vector<std::string>{"walking", "washwindow"});
+  CHECK(all.classes == all.actions);
   CHECK(ids_of(all.train) == std::vector<std::string>{"train/walking/walking_1", "train/walking/walking_2"});
   CHECK(ids_of(all.test) ==
         std::vector<std::string>{"test/walking/walking_1", "test/washwindow/washwindow_1"});
-  CHECK(says(message_of([&] { read_expmap_collection(folder.path(), {"washwindow"}); }),
-             "no files to train on of washwindow"));
-  CHECK(says(message_of([&] { read_expmap_collection(folder.path(), {}, ExpmapLayout::h36m); }),
+  CHECK(says(message_of([&] { read_expmap_collection(folder.path(), {.train_actions = {"washwindow"}}); }),
+             "no training file of the action 'washwindow'"));
+  CHECK(says(message_of([&] { read_expmap_collection(folder.path(), {.layout = ExpmapLayout::h36m}); }),
              "has no folder S5, which the layout h36m has"));
 }
 
@@ -98,7 +105,7 @@ TEST_CASE("folders that tell no layout, or two") {
   testing::write_small_cmu(folder.path());
   std::filesystem::create_directory(folder.path() / "S5");
   CHECK(says(message_of([&] { find_expmap_layout(folder.path()); }), "say which layout is meant"));
-  CHECK(read_expmap_collection(folder.path(), {}, ExpmapLayout::cmu).test.size() == 2);
+  CHECK(read_expmap_collection(folder.path(), {.layout = ExpmapLayout::cmu}).test.size() == 2);
 }
 
 TEST_CASE("the CMU texts themselves") {
@@ -115,6 +122,7 @@ TEST_CASE("the CMU texts themselves") {
   CHECK(all.columns == 117);
   CHECK(all.actions ==
         std::vector<std::string>{"basketball", "jumping", "running", "soccer", "walking", "washwindow"});
-  CHECK(all.train.size() == 25);
+  CHECK(all.classes.size() == 8);
+  CHECK(all.train.size() == 32);
   CHECK(all.test[4].text.frames == 359);
 }

@@ -36,14 +36,15 @@ using CompletionErrors = std::array<double, CompletionProtocol::measured.size()>
 /// A file's every second frame, normalised.
 struct CompletionClip {
   std::string id;
-  std::size_t action = 0;
+  std::size_t label = 0;  ///< its action, of CompletionData::classes()
   std::size_t frames = 0;
   std::vector<float> poses;  ///< [frames, dof]
 };
 
 /// A piece of a test file: what is given of it and what follows.
 struct CompletionTest {
-  std::size_t action = 0;
+  std::size_t action = 0;     ///< of CompletionData::actions()
+  std::size_t label = 0;      ///< the same action, of CompletionData::classes()
   std::string file;           ///< id of the clip
   std::size_t start = 0;      ///< first frame given, of the file's every second ones
   std::vector<float> prefix;  ///< [50, dof], normalised
@@ -52,13 +53,15 @@ struct CompletionTest {
 
 /// The training clips and the tests of a collection.
 ///
+/// Models may be trained on more actions than are tested.
+///
 /// Mean and deviation are those of all rows of the training files, before every second one is taken;
 /// dimensions that deviate by less than 1e-4 are dropped, and are their mean in truth and predictions alike.
 class CompletionData {
  public:
   /// Error if a test file is too short for the protocol, or nothing moves.
   explicit CompletionData(const motion::ExpmapCollection& files)
-      : layout_(files.layout), columns_(files.columns), actions_(files.actions) {
+      : layout_(files.layout), columns_(files.columns), actions_(files.actions), classes_(files.classes) {
     require(columns_ > 6, "the files have ", columns_,
             " numbers a line; the first six are not measured, expected more");
     std::vector<double> rows;
@@ -68,14 +71,15 @@ class CompletionData {
     require(dof() > 0, "no number of the training files changes by 1e-4 or more: nothing moves");
     for (const motion::ExpmapClip& clip : files.train) {
       const std::vector<double> poses = every_second(clip.text);
-      train_.push_back({clip.id, index_of(clip.action), poses.size() / columns_,
+      train_.push_back({clip.id, label_of(clip.action), poses.size() / columns_,
                         normalizer_.normalize<float>(std::span(poses))});
     }
     for (std::size_t a = 0; a < actions_.size(); ++a) draw_tests(files, a);
   }
 
   motion::ExpmapLayout layout() const { return layout_; }
-  const std::vector<std::string>& actions() const { return actions_; }
+  const std::vector<std::string>& actions() const { return actions_; }  ///< tested
+  const std::vector<std::string>& classes() const { return classes_; }  ///< that models tell apart
   const motion::Normalizer& normalizer() const { return normalizer_; }
   std::size_t columns() const { return columns_; }              ///< numbers of a line
   std::size_t dof() const { return normalizer_.kept_dof(); }    ///< numbers of a frame that models see
@@ -83,10 +87,11 @@ class CompletionData {
   const std::vector<CompletionClip>& train() const { return train_; }
   const std::vector<CompletionTest>& tests() const { return tests_; }  ///< eight of each action, in order
 
-  /// The number of training clips of an action.
+  /// The number of training clips of a tested action.
   std::size_t train_count(std::size_t action) const {
-    return static_cast<std::size_t>(std::count_if(
-        train_.begin(), train_.end(), [&](const CompletionClip& c) { return c.action == action; }));
+    const std::size_t label = label_of(actions_.at(action));
+    return static_cast<std::size_t>(std::count_if(train_.begin(), train_.end(),
+                                                  [&](const CompletionClip& c) { return c.label == label; }));
   }
 
   /// Milliseconds after the prefix at which measured frame `m` really stands: 80 to 1000 at 25 frames per
@@ -118,8 +123,8 @@ class CompletionData {
   }
 
  private:
-  std::size_t index_of(const std::string& action) const {
-    return static_cast<std::size_t>(std::find(actions_.begin(), actions_.end(), action) - actions_.begin());
+  std::size_t label_of(const std::string& action) const {
+    return static_cast<std::size_t>(std::find(classes_.begin(), classes_.end(), action) - classes_.begin());
   }
 
   std::vector<double> every_second(const motion::ExpmapText& text) const {
@@ -154,7 +159,7 @@ class CompletionData {
       const std::span<const double> piece =
           std::span(poses[c]).subspan(start * columns_, (P::prefix + P::future) * columns_);
       const auto seen = normalizer_.normalize<double>(piece);
-      CompletionTest test{action, clips[c]->id, start, {}, {}};
+      CompletionTest test{action, label_of(actions_[action]), clips[c]->id, start, {}, {}};
       test.prefix.assign(seen.begin(), seen.begin() + static_cast<std::ptrdiff_t>(P::prefix * dof()));
       test.truth = normalizer_.denormalize(std::span(seen));
       tests_.push_back(std::move(test));
@@ -163,7 +168,7 @@ class CompletionData {
 
   motion::ExpmapLayout layout_;
   std::size_t columns_ = 0;
-  std::vector<std::string> actions_;
+  std::vector<std::string> actions_, classes_;
   motion::Normalizer normalizer_;
   std::vector<CompletionClip> train_;
   std::vector<CompletionTest> tests_;

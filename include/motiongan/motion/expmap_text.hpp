@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 #include <set>
 #include <string>
@@ -95,13 +96,21 @@ struct ExpmapClip {
   ExpmapText text;
 };
 
-/// The files of some actions, those to train on and those to test with.
+/// The files to train on, and those to test some actions with.
 struct ExpmapCollection {
   ExpmapLayout layout = ExpmapLayout::h36m;
   std::size_t columns = 0;
-  std::vector<std::string> actions;  ///< in the order they were asked for, else by name
+  std::vector<std::string> actions;  ///< tested, in the order they were asked for, else by name
+  std::vector<std::string> classes;  ///< all actions that are trained on or could be tested, by name
   std::vector<ExpmapClip> train;     ///< by action, then by id
-  std::vector<ExpmapClip> test;      ///< of every action, in order: two for h36m (_1 and _2), one for cmu
+  std::vector<ExpmapClip> test;      ///< of every tested action, in order: two for h36m (_1, _2), one for cmu
+};
+
+/// Which files of a folder are read.
+struct ExpmapSelection {
+  std::vector<std::string> actions{};        ///< to test; none: all that have test files
+  std::vector<std::string> train_actions{};  ///< to train on; none: all that have training files
+  std::optional<ExpmapLayout> layout{};      ///< none: found out by the folders
 };
 
 namespace expmap_detail {
@@ -147,21 +156,50 @@ inline std::vector<std::string> testable_actions(const fs::path& folder, ExpmapL
   return out;
 }
 
+/// The actions that can be trained on.
+inline std::vector<std::string> trainable_actions(const fs::path& folder, ExpmapLayout layout) {
+  std::set<std::string> out;
+  if (layout == ExpmapLayout::cmu) {
+    for (const std::string& action : names_in(folder / "train", true))
+      if (!names_in(folder / "train" / action, false).empty()) out.insert(action);
+  } else {
+    for (const char* subject : training_subjects) {
+      if (!fs::is_directory(folder / subject)) continue;
+      for (const std::string& file : names_in(folder / subject, false))
+        if (file.ends_with("_1.txt") || file.ends_with("_2.txt")) out.insert(file.substr(0, file.size() - 6));
+    }
+  }
+  return {out.begin(), out.end()};
+}
+
 /// Below `folder`: the files of an action to train on.
 inline std::vector<fs::path> training_files(const fs::path& folder, ExpmapLayout layout,
                                             const std::string& action) {
   std::vector<fs::path> out;
   if (layout == ExpmapLayout::cmu) {
     const fs::path below = fs::path("train") / action;
-    if (fs::is_directory(folder / below))
-      for (const std::string& file : names_in(folder / below, false)) out.push_back(below / file);
-  } else {
-    for (const char* subject : training_subjects)
-      for (const char* part : {"_1.txt", "_2.txt"})
-        if (const fs::path file = fs::path(subject) / (action + part); fs::is_regular_file(folder / file))
-          out.push_back(file);
+    for (const std::string& file : names_in(folder / below, false)) out.push_back(below / file);
+    return out;
   }
+  for (const char* subject : training_subjects)
+    for (const char* part : {"_1.txt", "_2.txt"})
+      if (const fs::path file = fs::path(subject) / (action + part); fs::is_regular_file(folder / file))
+        out.push_back(file);
   return out;
+}
+
+/// The actions asked for, or all that are there. Error for one that is not there, or asked for twice.
+inline std::vector<std::string> chosen(const std::vector<std::string>& asked,
+                                       const std::vector<std::string>& there, const char* kind,
+                                       const fs::path& folder) {
+  std::set<std::string> seen;
+  for (const std::string& action : asked) {
+    require(std::find(there.begin(), there.end(), action) != there.end(), "no ", kind,
+            " file of the action '", action, "' in ", folder.string(),
+            "; those that have one: ", joined(there));
+    require(seen.insert(action).second, "the action '", action, "' was asked for twice");
+  }
+  return asked.empty() ? there : asked;
 }
 }  // namespace expmap_detail
 
@@ -179,30 +217,31 @@ inline ExpmapLayout find_expmap_layout(const std::filesystem::path& folder) {
   return h36m ? ExpmapLayout::h36m : ExpmapLayout::cmu;
 }
 
-/// Reads the files of `actions` (none: of all that can be tested with). An action may have no files to train
-/// on, but not all of them. Error, naming what there is, for an action without test files; and if the files
-/// differ in columns.
+/// Reads what is asked for. An action may be tested that has nothing to train on. Error, naming what there
+/// is, for an action without files; and if the files differ in columns.
 inline ExpmapCollection read_expmap_collection(const std::filesystem::path& folder,
-                                               std::vector<std::string> actions = {},
-                                               std::optional<ExpmapLayout> layout = {}) {
+                                               const ExpmapSelection& selection = {}) {
   namespace fs = std::filesystem;
   require(fs::is_directory(folder), folder.string(), " is not a folder");
   ExpmapCollection out;
-  out.layout = layout ? *layout : find_expmap_layout(folder);
+  out.layout = selection.layout ? *selection.layout : find_expmap_layout(folder);
   const bool cmu = out.layout == ExpmapLayout::cmu;
   for (const char* needed : {cmu ? "test" : "S5", cmu ? "train" : "S5"})
     require(fs::is_directory(folder / needed), folder.string(), " has no folder ", needed,
             ", which the layout ", name_of(out.layout), " has");
-  const std::vector<std::string> there = expmap_detail::testable_actions(folder, out.layout);
-  require(!there.empty(), folder.string(), " has no test files, expected ",
+  const std::vector<std::string> testable = expmap_detail::testable_actions(folder, out.layout),
+                                 trainable = expmap_detail::trainable_actions(folder, out.layout);
+  require(!testable.empty(), folder.string(), " has no test files, expected ",
           cmu ? "test/walking/walking_1.txt or alike" : "S5/walking_1.txt and S5/walking_2.txt or alike");
-  std::set<std::string> seen;
-  for (const std::string& action : actions) {
-    require(std::find(there.begin(), there.end(), action) != there.end(), "no test file of the action '",
-            action, "' in ", folder.string(), "; those that have one: ", expmap_detail::joined(there));
-    require(seen.insert(action).second, "the action '", action, "' was asked for twice");
-  }
-  out.actions = actions.empty() ? there : std::move(actions);
+  require(
+      !trainable.empty(), folder.string(), " has no files to train on, expected ",
+      cmu ? "train/walking/walking_1.txt or alike" : "S1/walking_1.txt or alike, of S1, S6, S7, S8, S9, S11");
+  out.actions = expmap_detail::chosen(selection.actions, testable, "test", folder);
+  std::vector<std::string> trained =
+      expmap_detail::chosen(selection.train_actions, trainable, "training", folder);
+  std::sort(trained.begin(), trained.end());
+  std::set_union(trained.begin(), trained.end(), testable.begin(), testable.end(),
+                 std::back_inserter(out.classes));
 
   fs::path first;
   const auto read = [&](const fs::path& below, const std::string& action) {
@@ -213,18 +252,15 @@ inline ExpmapCollection read_expmap_collection(const std::filesystem::path& fold
             " numbers a line, ", first.string(), " has ", out.columns, "; expected as many in all files");
     return clip;
   };
-  for (const std::string& action : out.actions) {
+  for (const std::string& action : trained)
     for (const fs::path& file : expmap_detail::training_files(folder, out.layout, action))
       out.train.push_back(read(file, action));
+  for (const std::string& action : out.actions)
     for (const char* part : {"_1.txt", "_2.txt"}) {
       if (cmu && part[1] == '2') break;
       const fs::path where = cmu ? fs::path("test") / action : fs::path("S5");
       out.test.push_back(read(where / (action + part), action));
     }
-  }
-  require(!out.train.empty(), folder.string(), " has no files to train on of ",
-          expmap_detail::joined(out.actions), ", expected ",
-          cmu ? "train/ACTION/ACTION_1.txt and more" : "S1/ACTION_1.txt and those of other subjects than S5");
   return out;
 }
 
