@@ -22,9 +22,10 @@ kernel void search_squares(global const real* x, uint x0, global real* squares, 
 kernel void search_spectra(global const real* x, uint x0, global const int* starts, global const real* table,
                            uint table0, global real* out, uint out0, uint windows, uint frames, uint columns,
                            uint frequencies) {
-  const uint pieces = (columns + VW - 1) / VW, item = get_global_id(0);
-  const uint w = item / pieces, j = item % pieces * VW, left = columns - j;
+  const uint pieces = (columns + VW - 1) / VW, item = get_global_id(0), w = item / pieces;
   if (w >= windows) return;
+  // The last piece ends with the row and overlaps the one before: the same numbers are written twice.
+  const uint j = min(item % pieces * VW, columns - min(columns, (uint)VW)), left = columns - j;
   global const real* from = x + x0 + (size_t)starts[w] * columns + j;
   global const real* turn = table + table0;
   const size_t plane = (size_t)windows * 2 * columns;
@@ -47,56 +48,91 @@ kernel void search_spectra(global const real* x, uint x0, global const int* star
   }
 }
 
-// Sum over n frames and the track's dimensions of the squared difference. The window's track is counted from
-// its first frame here and, where `turned`, its first two dimensions are turned back by the third; `other`
-// [n, dims, lanes] is the hypotheses' in the same form.
-static inline realv track_distance(global const real* track, global const real* other, uint n, uint dims,
-                                   uint lanes, uint turned, real yaw_scale) {
-  realv sum = 0;
-  global const real* origin = track;
-  const real c = turned ? cos(origin[2] * yaw_scale) : (real)1;
-  const real s = turned ? sin(origin[2] * yaw_scale) : (real)0;
-  for (uint t = 0; t < n; ++t, track += dims, other += dims * lanes) {
-    uint d = 0;
-    if (turned) {
-      const real dx = track[0] - origin[0], dz = track[1] - origin[1];
-      const realv x = (realv)(c * dx - s * dz) - LOAD_VECTOR(other);
-      const realv z = (realv)(s * dx + c * dz) - LOAD_VECTOR(other + lanes);
-      sum = fma(x, x, sum), sum = fma(z, z, sum);
-      d = 2;
+// The track of a window is its dimensions that are counted anew from the first frame that overlaps; of three
+// or more that are `turned` the first two, x and z, are turned back by the third, the yaw, of that frame.
+
+/// own[w, s, 0] = sum of the squares of the frames of window w that overlap with a hypothesis shifted by s,
+/// the last ones; own[w, s, 1] by -s, the first ones; own[w, s, 2:4] = cosine and sine of the yaw of frame s.
+/// `squares` [rows] are those of the plain part, `track` [rows, dims]. Turning changes no square. Work-items:
+/// windows times shifts 0 .. reach.
+kernel void search_overlaps(global const real* squares, uint squares0, global const real* track, uint track0,
+                            global const int* starts, global real* own, uint own0, uint windows, uint frames,
+                            uint reach, uint dims, uint turned, real yaw_scale) {
+  const uint item = get_global_id(0), w = item / (reach + 1), s = item % (reach + 1);
+  if (w >= windows) return;
+  global real* out = own + own0 + (size_t)item * 4;
+  for (uint early = 0; early < 2; ++early) {
+    const size_t row = (size_t)starts[w] + (early ? 0 : s);
+    global const real* first = track + track0 + row * dims;
+    real sum = 0;
+    for (uint t = 0; t < frames - s; ++t) {
+      sum += squares[squares0 + row + t];
+      for (uint d = 0; d < dims; ++d) {
+        const real moved = first[t * dims + d] - first[d];
+        sum = fma(moved, moved, sum);
+      }
     }
-    for (; d < dims; ++d) {
-      const realv e = (realv)(track[d] - origin[d]) - LOAD_VECTOR(other + d * lanes);
-      sum = fma(e, e, sum);
-    }
+    out[early] = sum;
   }
-  return sum;
+  const real angle = turned ? track[track0 + (size_t)(starts[w] + s) * dims + 2] * yaw_scale : (real)0;
+  out[2] = cos(angle), out[3] = sin(angle);
+}
+
+// Sum over n frames of the products of a window's track, from its first frame that overlaps on, and the
+// hypotheses' `other` [n, dims, lanes], counted and turned already; `sums` [dims, lanes] are other's over the
+// frames. With (x, z) counted from the frame `origin`, (bx, bz) at the first that overlaps and (h, k) of the
+// hypothesis, the product after turning is cos (x h + z k) + sin (x k - z h), less the same of (bx, bz) and
+// the sums of (h, k).
+static inline realv track_products(global const real* track, global const real* origin,
+                                   global const real* other, global const real* sums, uint n, uint dims,
+                                   uint lanes, uint turned, real cosine, real sine) {
+  const size_t next = (size_t)dims * lanes;
+  realv result = 0;
+  if (turned) {
+    const real x = origin[0], z = origin[1], yaw = origin[2];
+    const real bx = track[0] - x, bz = track[1] - z, by = track[2] - yaw;
+    realv xh = 0, zk = 0, xk = 0, zh = 0, y = 0;
+    for (uint t = 0; t < n; ++t) {
+      global const real* at = other + t * next;
+      const realv h = LOAD_VECTOR(at), k = LOAD_VECTOR(at + lanes), turn = LOAD_VECTOR(at + 2 * lanes);
+      const realv dx = track[t * dims] - x, dz = track[t * dims + 1] - z;
+      xh = fma(dx, h, xh), zk = fma(dz, k, zk), xk = fma(dx, k, xk), zh = fma(dz, h, zh);
+      y = fma((realv)(track[t * dims + 2] - yaw), turn, y);
+    }
+    const realv h = LOAD_VECTOR(sums), k = LOAD_VECTOR(sums + lanes);
+    const realv along = xh + zk - (bx * h + bz * k), across = xk - zh - (bx * k - bz * h);
+    result = cosine * along + sine * across + y - by * LOAD_VECTOR(sums + 2 * lanes);
+  }
+  for (uint d = turned ? 3 : 0; d < dims; ++d) {
+    realv sum = 0;
+    for (uint t = 0; t < n; ++t)
+      sum = fma((realv)(track[t * dims + d] - track[d]), LOAD_VECTOR(other + t * next + d * lanes), sum);
+    result += sum;
+  }
+  return result;
 }
 
 /// For each window and hypothesis the smallest mean square difference over the shifts -reach .. reach, and
-/// the shift: frame t of the hypothesis against frame t + shift of the window; of equals the smallest shift.
-/// Shapes: products [windows, frequencies, 2, lanes]; squares [rows]; track [rows, dims]; turns [reach + 1,
-/// frequencies, 2], cosine and sine; other_squares [reach + 1, 2, lanes], over the frames that overlap at
-/// shift s and -s; other_track [reach + 1, frames, dims, lanes], from frame s on; nearest and shifts
-/// [windows, lanes]. Work-items: windows times pieces of VW hypotheses.
-kernel void search_nearest(global const real* products, uint products0, global const real* squares,
-                           uint squares0, global const real* track, uint track0, global const int* starts,
+/// the shift; of equals the smallest shift. Shapes: products [windows, frequencies, 2, lanes]; own [windows,
+/// reach + 1, 4] of search_overlaps; track [rows, dims]; turns [reach + 1, frequencies, 2], cosine and sine;
+/// other_squares [reach + 1, 2, lanes], as own; other_track [reach + 1, frames, dims, lanes], from frame s
+/// on; other_sums [reach + 1, 2, dims, lanes], over the frames that overlap at shift s, from frame 0 on, and
+/// -s, from frame s on; nearest and shifts [windows, lanes]. Work-items: windows times pieces of VW
+/// hypotheses.
+kernel void search_nearest(global const real* products, uint products0, global const real* own, uint own0,
+                           global const real* track, uint track0, global const int* starts,
                            global const real* turns, uint turns0, global const real* other_squares,
                            uint other_squares0, global const real* other_track, uint other_track0,
-                           global real* nearest, uint nearest0, global real* shifts, uint shifts0,
-                           uint windows, uint frames, uint frequencies, uint reach, uint lanes, uint plain,
-                           uint dims, uint turned, real yaw_scale) {
+                           global const real* other_sums, uint other_sums0, global real* nearest,
+                           uint nearest0, global real* shifts, uint shifts0, uint windows, uint frames,
+                           uint frequencies, uint reach, uint lanes, uint dof, uint dims, uint turned) {
   const uint blocks = lanes / VW, item = get_global_id(0);
   const uint w = item / blocks, lane = item % blocks * VW;
   if (w >= windows) return;
-  const uint row = starts[w];
   global const real* p = products + products0 + (size_t)w * frequencies * 2 * lanes + lane;
-  global const real* own = squares + squares0 + row;
-  global const real* place = track + track0 + (size_t)row * dims;
+  global const real* place = track + track0 + (size_t)starts[w] * dims;
+  global const real* mine = own + own0 + (size_t)w * (reach + 1) * 4;
   global const real* turn = turns + turns0;
-  real later = 0;  // squares of the frames that overlap, without the first or the last s ones
-  for (uint t = 0; t < frames; ++t) later += own[t];
-  real earlier = later;
   realv best = INFINITY, where = 0;
   for (uint s = 0; s <= reach; ++s, turn += 2 * frequencies) {
     realv even = 0, odd = 0;
@@ -104,27 +140,23 @@ kernel void search_nearest(global const real* products, uint products0, global c
       even = fma(LOAD_VECTOR(p + f * 2 * lanes), (realv)(turn[2 * f]), even);
       odd = fma(LOAD_VECTOR(p + (f * 2 + 1) * lanes), (realv)(turn[2 * f + 1]), odd);
     }
-    if (s > 0) later -= own[s - 1], earlier -= own[frames - s];
     const uint n = frames - s;
-    const real share = 1 / ((real)n * (plain + dims));
-    global const real* theirs = other_squares + other_squares0 + s * 2 * lanes + lane;
-    global const real* beginning = other_track + other_track0 + lane;
-    realv sum = (realv)(later) + LOAD_VECTOR(theirs) - 2 * (even - odd);
-    if (dims > 0)
-      sum += track_distance(place + (size_t)s * dims, beginning, n, dims, lanes, turned, yaw_scale);
-    sum = fmax(sum * share, (realv)(0));
-    maskv closer = sum < best;
-    best = closer ? sum : best;
-    where = closer ? (realv)(s) : where;
-    if (s == 0) continue;
-    sum = (realv)(earlier) + LOAD_VECTOR(theirs + lanes) - 2 * (even + odd);
-    if (dims > 0)
-      sum += track_distance(place, beginning + (size_t)s * frames * dims * lanes, n, dims, lanes, turned,
-                            yaw_scale);
-    sum = fmax(sum * share, (realv)(0));
-    closer = sum < best;
-    best = closer ? sum : best;
-    where = closer ? -(realv)(s) : where;
+    const real share = 1 / ((real)n * dof);
+    for (uint early = 0; early < (s > 0 ? 2u : 1u); ++early) {
+      realv product = early ? even + odd : even - odd;
+      const uint from = early ? 0 : s, pair = s * 2 + early;  // the window's first frame that overlaps
+      if (dims > 0)
+        product +=
+            track_products(place + from * dims, place,
+                           other_track + other_track0 + (size_t)(s - from) * frames * dims * lanes + lane,
+                           other_sums + other_sums0 + (size_t)pair * dims * lanes + lane, n, dims, lanes,
+                           turned, mine[from * 4 + 2], mine[from * 4 + 3]);
+      const realv theirs = LOAD_VECTOR(other_squares + other_squares0 + pair * lanes + lane);
+      const realv mean = fmax((mine[s * 4 + early] + theirs - 2 * product) * share, (realv)(0));
+      const maskv closer = mean < best;
+      best = closer ? mean : best;
+      where = closer ? (realv)(early ? -(real)s : (real)s) : where;
+    }
   }
   STORE_VECTOR(best, nearest + nearest0 + (size_t)w * lanes + lane);
   STORE_VECTOR(where, shifts + shifts0 + (size_t)w * lanes + lane);

@@ -32,9 +32,9 @@ struct SearchWindowsOptions {
 /// dimensions of window[t + s] hypothesis[t]: a correlation, which is a product of spectra. Windows are
 /// padded with zeros to N + N / 2 frames (no shift up to N / 2 wraps around), so that a pair of N = 32 costs
 /// 25 complex products a dimension where all pairs of frames are 1024: a tenth of the arithmetic. Squares are
-/// summed apart, and the few dimensions that are counted anew for each shift are compared directly. Sums have
-/// a fixed order: equal calls give equal bits, whatever the chunk. In float a distance near 0 is off by up to
-/// about 1e-3, for it is the difference of large sums.
+/// summed apart; the few dimensions that are counted anew for each shift are multiplied shift by shift. Sums
+/// have a fixed order: equal calls give equal bits, whatever the chunk. In float a distance near 0 is off by
+/// up to about 1e-3, for it is the difference of large sums.
 class SearchWindows {
  public:
   /// `frames` are those of all clips, `starts` the first frame of each window in them, ascending. `frames`
@@ -82,13 +82,16 @@ class SearchWindows {
   struct Chunk {
     std::size_t windows;
     Indices starts;
-    Tensor spectra, squares, track;
+    Tensor spectra;  ///< [frequencies, windows, 2 columns]
+    Tensor own;      ///< [windows, reach + 1, 4], squares of what overlaps, turns
+    Tensor track;    ///< [frames, track]
   };
   struct Query {
     std::size_t hypotheses, lanes;
     Tensor spectra;  ///< [frequencies, 2 columns, 2 lanes]
     Tensor squares;  ///< [reach + 1, 2, lanes]
-    Tensor track;    ///< [reach + 1, frames, track, lanes]
+    Tensor track;    ///< [reach + 1, frames, track, lanes], counted from frame s on
+    Tensor sums;     ///< [reach + 1, 2, track, lanes], of track over what overlaps
   };
 
   std::size_t reach() const { return search_reach(format_.frames); }
@@ -126,13 +129,14 @@ class SearchWindows {
       return std::span<const float>(of).subspan(row * width, rows * width);
     };
     const Tensor plain = Tensor::from(context_, {rows, columns}, part(frames_->plain, columns));
-    Chunk chunk{count,
-                Indices(context_, starts),
-                Tensor(context_, {frequencies_, count, 2 * columns}),
-                Tensor(context_, {rows}),
-                {}};
-    chunk.track = dims > 0 ? Tensor::from(context_, {rows, dims}, part(frames_->track, dims)) : chunk.squares;
-    context_.launch("search", "search_squares", Grid::items(rows), plain, chunk.squares, rows, columns);
+    const Tensor squares(context_, {rows});
+    Chunk chunk{count, Indices(context_, starts), Tensor(context_, {frequencies_, count, 2 * columns}),
+                Tensor(context_, {count, reach() + 1, 4}), squares};
+    if (dims > 0) chunk.track = Tensor::from(context_, {rows, dims}, part(frames_->track, dims));
+    context_.launch("search", "search_squares", Grid::items(rows), plain, squares, rows, columns);
+    context_.launch("search", "search_overlaps", Grid::items(count * (reach() + 1)), squares, chunk.track,
+                    chunk.starts, chunk.own, count, format_.frames, reach(), dims,
+                    std::size_t{layout_.turned}, Real{layout_.yaw_scale});
     const std::size_t pieces = (columns + context_.vector_width() - 1) / context_.vector_width();
     context_.launch("search", "search_spectra", Grid::items(count * pieces), plain, chunk.starts, table_,
                     chunk.spectra, count, format_.frames, columns, frequencies_);
@@ -145,7 +149,7 @@ class SearchWindows {
     const std::size_t width = context_.vector_width();
     const std::size_t lanes = (hypotheses.size() + width - 1) / width * width;
     std::vector<double> spectra(spectrum() * 2 * lanes), squares((reach() + 1) * 2 * lanes);
-    std::vector<float> track((reach() + 1) * frames * dims * lanes);
+    std::vector<double> track((reach() + 1) * frames * dims * lanes), sums((reach() + 1) * 2 * dims * lanes);
     std::vector<double> cosine(length_), sine(length_);
     for (std::size_t i = 0; i < length_; ++i)
       cosine[i] = std::cos(angle(1, i)), sine[i] = std::sin(angle(1, i));
@@ -160,10 +164,11 @@ class SearchWindows {
         const double weight = (once ? 1.0 : 2.0) / static_cast<double>(length_);
         for (std::size_t k = 0; k < columns; ++k) {
           double real = 0, imaginary = 0;
-          for (std::size_t t = 0; t < frames; ++t) {
+          for (std::size_t t = 0, turn = 0; t < frames; ++t) {
             const double value = split.plain[t * columns + k];
-            real += value * cosine[f * t % length_];
-            imaginary -= value * sine[f * t % length_];
+            real += value * cosine[turn];
+            imaginary -= value * sine[turn];
+            turn = turn + f < length_ ? turn + f : turn + f - length_;
           }
           // Window times conjugate hypothesis: rows are the window's real and imaginary parts.
           double* const at = &spectra[(f * 2 * columns + k) * 2 * lanes + h];
@@ -171,29 +176,30 @@ class SearchWindows {
           at[columns * 2 * lanes] = weight * imaginary, at[columns * 2 * lanes + lanes] = weight * real;
         }
       }
-      std::vector<double> sums(frames + 1);  // of squares of the frames before
-      for (std::size_t t = 0; t < frames; ++t) {
-        sums[t + 1] = sums[t];
-        for (std::size_t k = 0; k < columns; ++k)
-          sums[t + 1] += std::pow(static_cast<double>(split.plain[t * columns + k]), 2);
-      }
-      for (std::size_t s = 0; s <= reach(); ++s) {
-        squares[s * 2 * lanes + h] = sums[frames - s];
-        squares[(s * 2 + 1) * lanes + h] = sums[frames] - sums[s];
-        if (dims == 0) continue;
-        const std::vector<float> rest = split.window(format_, layout_, s, frames - s);
-        for (std::size_t t = 0; t < frames - s; ++t)
-          for (std::size_t d = 0; d < dims; ++d)
-            track[((s * frames + t) * dims + d) * lanes + h] = rest[t * format_.dof() + layout_.track[d]];
-      }
+      for (std::size_t s = 0; s <= reach(); ++s)
+        for (const std::size_t early : {std::size_t{0}, std::size_t{1}}) {
+          // Shifted by s the hypothesis's first frames overlap, by -s those from frame s on.
+          const std::size_t from = early * s, at = s * 2 + early;
+          const std::vector<float> part = split.window(format_, layout_, from, frames - s);
+          for (const float value : part)
+            squares[at * lanes + h] += static_cast<double>(value) * static_cast<double>(value);
+          for (std::size_t t = 0; t < frames - s; ++t)
+            for (std::size_t d = 0; d < dims; ++d) {
+              const double value = part[t * format_.dof() + layout_.track[d]];
+              sums[(at * dims + d) * lanes + h] += value;
+              if (early == 1 || s == 0) track[((from * frames + t) * dims + d) * lanes + h] = value;
+            }
+        }
     }
     Query query{hypotheses.size(),
                 lanes,
                 Tensor::from(context_, {frequencies_, 2 * columns, 2 * lanes}, spectra),
                 Tensor::from(context_, {reach() + 1, 2, lanes}, squares),
+                {},
                 {}};
     query.track =
         dims > 0 ? Tensor::from(context_, {reach() + 1, frames, dims, lanes}, track) : query.squares;
+    query.sums = dims > 0 ? Tensor::from(context_, {reach() + 1, 2, dims, lanes}, sums) : query.squares;
     return query;
   }
 
@@ -209,10 +215,9 @@ class SearchWindows {
     product.c_batch_stride = 2 * lanes;
     gemm(context_, product);
     context_.launch("search", "search_nearest", Grid::items(chunk.windows * lanes / context_.vector_width()),
-                    products, chunk.squares, chunk.track, chunk.starts, turns_, query.squares, query.track,
-                    nearest, shifts, chunk.windows, format_.frames, frequencies_, reach(), lanes,
-                    layout_.plain.size(), layout_.track.size(), std::size_t{layout_.turned},
-                    Real{layout_.yaw_scale});
+                    products, chunk.own, chunk.track, chunk.starts, turns_, query.squares, query.track,
+                    query.sums, nearest, shifts, chunk.windows, format_.frames, frequencies_, reach(), lanes,
+                    format_.dof(), layout_.track.size(), std::size_t{layout_.turned});
     const std::vector<float> distance = nearest.to_host<float>(), shift = shifts.to_host<float>();
     for (std::size_t w = 0; w < chunk.windows; ++w)
       for (std::size_t h = 0; h < query.hypotheses; ++h) {
