@@ -109,6 +109,11 @@
 #include "motiongan/eval/position_metrics.hpp"
 #include "motiongan/eval/ranker_evaluation.hpp"
 #include "motiongan/eval/retrieval.hpp"
+#include "motiongan/eval/search_collection.hpp"
+#include "motiongan/eval/search_distance.hpp"
+#include "motiongan/eval/search_index.hpp"
+#include "motiongan/eval/search_ranking.hpp"
+#include "motiongan/eval/search_windows.hpp"
 #include "motiongan/eval/symmetric_eigenvalues.hpp"
 //
 #include "motiongan/view/heat_map.hpp"

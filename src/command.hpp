@@ -28,6 +28,7 @@ void add_train_ranker(CLI::App& train, Job& job);
 void add_generate(CLI::App& app, Job& job);
 void add_complete(CLI::App& app, Job& job);
 void add_augment(CLI::App& app, Job& job);
+void add_search(CLI::App& app, Job& job);
 void add_info(CLI::App& app, Job& job);
 void add_view(CLI::App& app, Job& job);
 void add_synth(CLI::App& app, Job& job);

@@ -49,6 +49,7 @@ int run(int argc, char** argv) {
   add_generate(app, job);
   add_complete(app, job);
   add_augment(app, job);
+  add_search(app, job);
   add_info(app, job);
   add_view(app, job);
   add_compare(app, job);
