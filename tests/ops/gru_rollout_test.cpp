@@ -40,8 +40,9 @@ Function composed(std::size_t frames) {
 }  // namespace
 
 TEST_CASE("gru_rollout: derivatives of every input, to third order") {
-  for (const auto& [given, frames, k] :
+  for (const auto& sizes :
        {std::array<std::size_t, 3>{1, 1, 3}, {3, 1, 2}, {1, 3, 3}, {3, 3, 9}, {2, 4, 5}}) {
+    const std::size_t given = sizes[0], frames = sizes[1], k = sizes[2];
     CAPTURE(given);
     CAPTURE(frames);
     CHECK(check_grads(double_context(), fused(frames), inputs(given, 2, 3, k), 2) < 1e-7);
@@ -50,7 +51,8 @@ TEST_CASE("gru_rollout: derivatives of every input, to third order") {
 }
 
 TEST_CASE("gru_rollout: the fused form is the composed one") {
-  for (const auto& [given, frames] : {std::array<std::size_t, 2>{1, 1}, {5, 1}, {1, 6}, {4, 7}}) {
+  for (const auto& sizes : {std::array<std::size_t, 2>{1, 1}, {5, 1}, {1, 6}, {4, 7}}) {
+    const std::size_t given = sizes[0], frames = sizes[1];
     CAPTURE(given);
     CAPTURE(frames);
     std::vector<Var> x;

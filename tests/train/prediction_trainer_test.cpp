@@ -83,7 +83,7 @@ TEST_CASE("on waves every model comes far below holding the last pose") {
     const bool narrow = predictor == Predictor::erd;  // a tenth of its width is all that passes
     PredictionModel model(context, dof, 2, {.predictor = predictor, .hidden = narrow ? 80U : 40U});
     PredictionTrainOptions options = small_options(predictor == Predictor::seq2seq ? 400 : 300);
-    options.batch = 16;
+    options.batch = 8;
     CHECK(train(model, data, options).iterations == options.iterations);
     double error = 0, held = 0;
     for (std::size_t at = 0; at < 40; at += 5) {  // of the last sequence, drawn from in training as well

@@ -33,8 +33,8 @@ class Sgd : public Optimizer {
   /// The learning rate of the step after `done` steps.
   double rate(std::size_t done) const {
     if (options_.decay_every == 0) return options_.learning_rate;
-    return options_.learning_rate *
-           std::pow(options_.decay, static_cast<double>(done / options_.decay_every));
+    const std::size_t falls = done / options_.decay_every;
+    return options_.learning_rate * std::pow(options_.decay, static_cast<double>(falls));
   }
 
  private:
