@@ -32,8 +32,8 @@ int evaluate_completion(CompletionArgs args, const CLI::App& verb) {
             " twice");
     if (model != "zero") trained.push_back(model);
   }
-  require(trained.empty() || !args.save.empty(), "--save DIR is needed to train ", listed(trained),
-          "; --models zero alone needs none");
+  require(trained.empty() || !args.save.empty(), "--save DIR is needed for ", listed(trained),
+          ": where they are kept; --models zero alone needs none");
   // Minutes alone are the whole budget.
   if (args.minutes > 0) {
     if (verb.count("--iterations") == 0) args.predictors.iterations = 0;

@@ -25,9 +25,9 @@ std::vector<CompletionRow> measure(const Context& context, const CompletionData&
       const Dvgan dvgan = Dvgan::load(context, files.generator());
       const auto stride = static_cast<std::size_t>(std::lround(data.rate() / dvgan.format().rate));
       const SampledErrors errors = dvgan_errors(dvgan, data, stride, args.samples, args.seed);
-      rows.push_back({fmt::format("dvgan, mean of {}", args.samples), errors.mean, false, iterations});
+      rows.push_back({fmt::format("dvgan; mean of {}", args.samples), errors.mean, false, iterations});
       if (args.samples > 1)
-        rows.push_back({fmt::format("dvgan, best of {}", args.samples), errors.best, false, iterations});
+        rows.push_back({fmt::format("dvgan; best of {}", args.samples), errors.best, false, iterations});
     } else {
       const PredictionModel predictor = PredictionModel::load(context, files.generator());
       rows.push_back({model, prediction_errors(predictor, data), false, iterations});
@@ -64,7 +64,7 @@ std::vector<std::string> notes_on(const CompletionData& data, const CompletionAr
   std::vector<std::string> untrained;
   for (std::size_t a = 0; a < data.actions().size(); ++a)
     if (data.train_count(a) == 0) untrained.push_back(data.actions()[a]);
-  if (!untrained.empty())
+  if (!untrained.empty() && table.rows.size() > 1)
     notes.push_back("Not trained on, for there are no training files of it: " + listed(untrained) + ".");
   if (table.times_differ())
     notes.push_back(
