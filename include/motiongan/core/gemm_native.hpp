@@ -116,7 +116,8 @@ inline void launch_turn(const Context& context, const At& x, std::size_t ld, std
 
 /// A transposed A is read by columns, tile after tile and panel after panel. Where its rows are long, each
 /// number of a column lies in a page of its own: then A is turned first; or, where B's rows are shorter and
-/// C is nothing but the product, both change places and C is turned. The same bits in any case.
+/// C is nothing but the product, both change places and C is turned (not where B's rows are whole pages: all
+/// numbers of a column would fall into the same few lines of the cache). The same bits in any case.
 inline void gemm_native(const Context& context, const GemmCall& wanted) {
   const bool far = wanted.a_transposed && wanted.segments == 1 && wanted.batch == 1 && wanted.a_ld >= 512 &&
                    wanted.m >= 64 && wanted.n >= 64 && wanted.k >= 256;
@@ -124,7 +125,8 @@ inline void gemm_native(const Context& context, const GemmCall& wanted) {
   GemmCall g = wanted;
   const bool only_product =
       !g.accumulate && g.bias.empty() && g.residual.empty() && !g.relu && !g.b_transposed;
-  if (only_product && g.b_ld < g.a_ld) {
+  constexpr std::size_t page = 4096;
+  if (only_product && g.b_ld < g.a_ld && g.b_ld * context.real_size() % page != 0) {
     g.a = wanted.b, g.b = wanted.a;
     g.a_ld = wanted.b_ld, g.b_ld = wanted.a_ld;
     g.a_offset[0] = wanted.b_offset[0], g.b_offset[0] = wanted.a_offset[0];
