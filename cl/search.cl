@@ -53,29 +53,42 @@ kernel void search_spectra(global const real* x, uint x0, global const int* star
 
 /// own[w, s, 0] = sum of the squares of the frames of window w that overlap with a hypothesis shifted by s,
 /// the last ones; own[w, s, 1] by -s, the first ones; own[w, s, 2:4] = cosine and sine of the yaw of frame s.
-/// `squares` [rows] are those of the plain part, `track` [rows, dims]. Turning changes no square. Work-items:
-/// windows times shifts 0 .. reach.
+/// `squares` [rows] are those of the plain part, `track` [rows, dims]. Turning changes no square. Sums over
+/// fewer frames are those over more, less what falls away. Work-items: windows.
 kernel void search_overlaps(global const real* squares, uint squares0, global const real* track, uint track0,
                             global const int* starts, global real* own, uint own0, uint windows, uint frames,
                             uint reach, uint dims, uint turned, real yaw_scale) {
-  const uint item = get_global_id(0), w = item / (reach + 1), s = item % (reach + 1);
+  const uint w = get_global_id(0);
   if (w >= windows) return;
-  global real* out = own + own0 + (size_t)item * 4;
-  for (uint early = 0; early < 2; ++early) {
-    const size_t row = (size_t)starts[w] + (early ? 0 : s);
-    global const real* first = track + track0 + row * dims;
-    real sum = 0;
-    for (uint t = 0; t < frames - s; ++t) {
-      sum += squares[squares0 + row + t];
-      for (uint d = 0; d < dims; ++d) {
-        const real moved = first[t * dims + d] - first[d];
-        sum = fma(moved, moved, sum);
-      }
-    }
-    out[early] = sum;
+  global const real* square = squares + squares0 + starts[w];
+  global const real* place = track + track0 + (size_t)starts[w] * dims;
+  global real* out = own + own0 + (size_t)w * (reach + 1) * 4;
+  real late = 0;
+  for (uint t = 0; t < frames; ++t) late += square[t];
+  real early = late;
+  for (uint s = 0; s <= reach; ++s) {
+    if (s > 0) late -= square[s - 1], early -= square[frames - s];
+    const real angle = turned ? place[s * dims + 2] * yaw_scale : (real)0;
+    out[s * 4] = late, out[s * 4 + 1] = early, out[s * 4 + 2] = cos(angle), out[s * 4 + 3] = sin(angle);
   }
-  const real angle = turned ? track[track0 + (size_t)(starts[w] + s) * dims + 2] * yaw_scale : (real)0;
-  out[2] = cos(angle), out[3] = sin(angle);
+  for (uint d = 0; d < dims; ++d) {
+    const real origin = place[d];
+    real sum = 0, all = 0;
+    for (uint t = 0; t < frames; ++t) {
+      const real x = place[t * dims + d] - origin;
+      sum += x, all = fma(x, x, all);
+    }
+    early = late = all;
+    for (uint s = 0; s <= reach; ++s) {
+      if (s > 0) {
+        const real gone = place[(s - 1) * dims + d] - origin, last = place[(frames - s) * dims + d] - origin;
+        sum -= gone, late -= gone * gone, early -= last * last;
+      }
+      const real base = place[s * dims + d] - origin;  // frames are counted from frame s
+      out[s * 4] += late - 2 * base * sum + (frames - s) * base * base;
+      out[s * 4 + 1] += early;
+    }
+  }
 }
 
 // Sum over n frames of the products of a window's track, from its first frame that overlaps on, and the

@@ -134,9 +134,9 @@ class SearchWindows {
                 Tensor(context_, {count, reach() + 1, 4}), squares};
     if (dims > 0) chunk.track = Tensor::from(context_, {rows, dims}, part(frames_->track, dims));
     context_.launch("search", "search_squares", Grid::items(rows), plain, squares, rows, columns);
-    context_.launch("search", "search_overlaps", Grid::items(count * (reach() + 1)), squares, chunk.track,
-                    chunk.starts, chunk.own, count, format_.frames, reach(), dims,
-                    std::size_t{layout_.turned}, Real{layout_.yaw_scale});
+    context_.launch("search", "search_overlaps", Grid::items(count), squares, chunk.track, chunk.starts,
+                    chunk.own, count, format_.frames, reach(), dims, std::size_t{layout_.turned},
+                    Real{layout_.yaw_scale});
     const std::size_t pieces = (columns + context_.vector_width() - 1) / context_.vector_width();
     context_.launch("search", "search_spectra", Grid::items(count * pieces), plain, chunk.starts, table_,
                     chunk.spectra, count, format_.frames, columns, frequencies_);
