@@ -95,6 +95,7 @@
 #include "motiongan/eval/completion_table.hpp"
 #include "motiongan/eval/diversity.hpp"
 #include "motiongan/eval/drift.hpp"
+#include "motiongan/eval/dvgan_ablation.hpp"
 #include "motiongan/eval/euler_error.hpp"
 #include "motiongan/eval/foot_skate.hpp"
 #include "motiongan/eval/frechet_distance.hpp"

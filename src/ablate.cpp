@@ -4,6 +4,7 @@
 #include "action_data.hpp"
 #include "run_start.hpp"
 #include "signals.hpp"
+#include "training_options.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -87,9 +88,7 @@ int run_ablation(AblateArgs args, const CLI::App& verb) {
   for (const std::string& name : args.variants) variants.push_back(&ablation_variant(name));
   if (variants.empty())
     for (const AblationVariant& variant : ablation_variants()) variants.push_back(&variant);
-  AblationBudget& budget = args.training.budget;
-  // A number of iterations alone is the whole budget.
-  if (verb.count("--iterations") > 0 && verb.count("--minutes") == 0) budget.minutes = 0;
+  settle_budget(verb, args.training.budget);
   if (args.data.folder.empty() && args.data.procedural == 0) take_options_of(args, verb);
   require(!args.data.folder.empty() || args.data.procedural > 0,
           "there is nothing to compare on: give a folder of clips and their labels, or --procedural");
@@ -104,7 +103,7 @@ int run_ablation(AblateArgs args, const CLI::App& verb) {
   choose_windows(data, args.evaluation.frames, args.evaluation.windows, args.evaluation.seed);
   if (!args.evaluate_only) {
     print_fact("saved to", fmt::format("{}, every {} and at the end of each variant", args.save,
-                                       duration(60 * args.training.save_every_minutes)));
+                                       duration(60 * args.training.budget.save_every_minutes)));
     const bool all = train_variants(context, data, args.save, variants, args.training,
                                     [&](const AblationVariant& variant) { return notes_of(args, variant); });
     if (!all) return 128 + caught_signal();
@@ -119,10 +118,7 @@ void add_training_options(CLI::App& verb, AblationTraining& a) {
     return verb.add_option(name, member, text)->capture_default_str()->group("Training, the same for all");
   };
   AttentionTrainOptions& t = a.training;
-  option("--minutes", a.budget.minutes, "for each variant; 0: no limit")->check(not_negative());
-  option("--iterations", a.budget.iterations,
-         "for each variant; 0: no limit. Alone, it takes the place of --minutes")
-      ->check(not_negative());
+  add_budget_options(verb, a.budget, "for each variant", "Training, the same for all");
   option("--hidden", a.model.hidden, "width of the networks")->check(positive());
   option("--batch", t.batch, "windows in a step")->check(positive());
   option("--critic-steps", t.critic_steps, "in each iteration")->check(positive());
@@ -135,11 +131,8 @@ void add_training_options(CLI::App& verb, AblationTraining& a) {
   option("--blend-weight", t.blend_weight, "of the loss at the seam, where a variant has it")
       ->check(positive());
   option("--class-weight", t.class_weight, "of the classification loss")->check(not_negative());
-  option("--learning-rate", t.adam.learning_rate, "Adam's, of all networks")->check(positive());
+  add_adam_options(verb, t.adam, ", of all networks", "Training, the same for all");
   option("--seed", t.seed, "of first weights, batches and noise")->check(not_negative());
-  option("--save-every", a.save_every_minutes, "minutes between two checkpoints; 0: only at the end")
-      ->check(not_negative());
-  option("--log-every", a.log_every, "iterations between two rows of log.csv")->check(positive());
 }
 
 }  // namespace
@@ -147,6 +140,7 @@ void add_training_options(CLI::App& verb, AblationTraining& a) {
 void add_ablate(CLI::App& app, Job& job) {
   CLI::App* ablate = app.add_subcommand("ablate", "Compare a model with itself without each of its parts");
   ablate->require_subcommand(1);
+  add_ablate_dvgan(*ablate, job);
   CLI::App* verb = ablate->add_subcommand(
       "attention",
       "Train the attention WGAN-GP, the same without attention, blend loss, skeleton loss, and the LSTM, "

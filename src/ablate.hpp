@@ -3,21 +3,17 @@
 #include "command.hpp"
 #include "motiongan/eval/action_ablation.hpp"
 #include "motiongan/train/train_attention.hpp"
+#include "training_budget.hpp"
 
 namespace motiongan::command {
 
-/// What is trained, and for how long.
-struct AblationBudget {
-  double minutes = 0;          ///< of each variant; 0: no limit
-  std::size_t iterations = 0;  ///< of each variant; 0: no limit
-};
+void add_ablate_dvgan(CLI::App& ablate, Job& job);
 
+/// What is trained, and for how long each.
 struct AblationTraining {
   AttentionGanOptions model;
   AttentionTrainOptions training;
-  AblationBudget budget;
-  double save_every_minutes = 5;
-  std::size_t log_every = 10;
+  TrainingBudget budget;
 };
 
 /// The note of a variant's options that its checkpoint keeps.

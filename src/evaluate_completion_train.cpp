@@ -1,6 +1,5 @@
 // motiongan evaluate completion: training the models of the table.
 #include "evaluate_completion.hpp"
-#include "motiongan/train/progress.hpp"
 #include "motiongan/train/train.hpp"
 #include "motiongan/train/train_prediction.hpp"
 #include "run_start.hpp"
@@ -53,48 +52,11 @@ void take_run(CompletionArgs& args, bool dvgan, const CLI::App& verb, const fs::
             " is asked; give the same, or choose another --save");
 }
 
-template <class Losses>
-std::vector<NamedValue> shown(const Losses& losses) {
-  std::vector<NamedValue> out;
-  for (const LossColumn& column : columns(losses)) out.emplace_back(column.first, column.second);
-  return out;
-}
-
-/// Trains on; whether it got to its end.
-template <class Losses, class Model, class Data, class Options>
-bool train_one(Model& model, const Data& data, Options options, BasicRunOptions<Losses> run,
-               const TrainingBudget& budget, const CompletionArgs& args, const std::string& name) {
-  const RunFiles files{run.save_dir};
-  std::size_t done = 0;
-  double minutes = 0;
-  run.resume = fs::exists(files.checkpoint());
-  if (run.resume) {
-    done = read_run_record(files.checkpoint()).iteration;
-    minutes = seconds_trained(files, done) / 60;
-  }
-  fmt::print("{}: training for {}{}\n", name, budget.text(),
-             run.resume
-                 ? fmt::format("; {} after {} are done", counted(done, "iteration"), duration(60 * minutes))
-                 : "");
-  std::fflush(stdout);
-  if ((budget.minutes == 0 || minutes < budget.minutes) && done < options.iterations) {
-    ProgressBar bar(0, {.label = name});
-    bar.start(budget.iterations, done);
-    if (budget.minutes > 0) run.max_minutes = budget.minutes - minutes;
-    run.save_every_minutes = args.save_every_minutes;
-    run.log_every = args.log_every;
-    run.should_stop = [] { return caught_signal() != 0; };
-    run.report = [&](std::size_t iteration, const Losses& losses) { bar.update(iteration, shown(losses)); };
-    done = train(model, data, options, run).iterations;
-    bar.finish();
-    if (caught_signal() != 0) {
-      fmt::print("{}: stopped after {}; the same command goes on\n", name, counted(done, "iteration"));
-      return false;
-    }
-  }
-  mark_finished(run.save_dir, budget, done);
-  fmt::print("{}: finished after {}\n", name, counted(done, "iteration"));
-  return true;
+TrainingBudget budget_of(const CompletionArgs& args, bool dvgan) {
+  TrainingBudget budget = dvgan ? args.dvgan : args.predictors;
+  budget.save_every_minutes = args.save_every_minutes;
+  budget.log_every = args.log_every;
+  return budget;
 }
 
 RunNotes notes_of(CompletionArgs args, bool dvgan, const CompletionData& data) {
@@ -121,9 +83,9 @@ bool train_dvgan(const Context& context, const CompletionData& data, const Compl
   if (options.critic.critic == Critic::cnn) levels_of(args.dvgan_frames);
   Dvgan model(context, windows.format,
               {.generator = Generator::rnn, .hidden = args.dvgan_hidden, .seed = args.seed});
-  return train_one(model, windows, options,
-                   RunOptions{.save_dir = folder, .notes = notes_of(args, true, data)}, args.dvgan, args,
-                   "dvgan");
+  return train_within(model, windows, options,
+                      RunOptions{.save_dir = folder, .notes = notes_of(args, true, data)},
+                      budget_of(args, true), "dvgan");
 }
 
 bool train_predictor(const Context& context, const CompletionData& data, const CompletionArgs& args,
@@ -138,9 +100,9 @@ bool train_predictor(const Context& context, const CompletionData& data, const C
   options.seed = args.seed;
   PredictionModel model(context, data.dof(), data.classes().size(),
                         {.predictor = predictor_from(kind), .hidden = args.hidden, .seed = args.seed});
-  return train_one(model, prediction_data(data), options,
-                   PredictionRunOptions{.save_dir = folder, .notes = notes_of(args, false, data)},
-                   args.predictors, args, name);
+  return train_within(model, prediction_data(data), options,
+                      PredictionRunOptions{.save_dir = folder, .notes = notes_of(args, false, data)},
+                      budget_of(args, false), name);
 }
 
 }  // namespace
@@ -165,22 +127,17 @@ bool train_completion_models(const Context& context, const CompletionData& data,
     if (fs::exists(checkpoint)) {
       take_run(args, dvgan, verb, checkpoint);
       require_same_data(data, checkpoint);
-      const auto had = finished_budget(folder);
-      if (had && (dvgan ? args.dvgan : args.predictors).within(*had)) {
+      if (has_had(folder, budget_of(args, dvgan))) {
         fmt::print("{}: is trained already\n", model);
         continue;
       }
     }
     make_folder(folder);
-    try {
-      const bool ended = dvgan ? train_dvgan(context, data, args, folder)
-                               : train_predictor(context, data, args, folder, model);
-      if (!ended) return false;
-    } catch (const Error& error) {
-      // A baseline that diverges does not cost the others their turn.
-      if (std::string_view(error.what()).find("training diverged") == std::string_view::npos) throw;
-      fmt::print(stderr, "motiongan: {}: {}\n", model, error.what());
-    }
+    const bool ended = unless_diverged(model, [&] {
+      return dvgan ? train_dvgan(context, data, args, folder)
+                   : train_predictor(context, data, args, folder, model);
+    });
+    if (!ended) return false;
   }
   return true;
 }

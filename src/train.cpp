@@ -2,6 +2,7 @@
 #include "motiongan/train/progress.hpp"
 #include "run_start.hpp"
 #include "training.hpp"
+#include "training_options.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -69,7 +70,6 @@ void add_train_dvgan(CLI::App& train, Job& job) {
   const auto option = [&](const char* name, auto& member, const char* text) {
     return verb->add_option(name, member, text)->capture_default_str();
   };
-  const CLI::Range below_one(0.0, 0.9999999, "0 .. 1");
   add_captioned_data_options(*verb, a);
   verb->add_option("--save", a.save, "folder of the run [save/NAME, NAME being the folder's]")
       ->type_name("DIR");
@@ -83,36 +83,14 @@ void add_train_dvgan(CLI::App& train, Job& job) {
   option("--critic", a.critic, "cnn: judges every time scale; rnn: poses and their changes")
       ->check(CLI::IsMember({"cnn", "rnn"}))
       ->group("Model");
-  option("--hidden", a.model.hidden, "width of the networks")->check(positive())->group("Model");
-  option("--taps", a.model.taps, "of the convolutions")->check(CLI::IsMember({3, 5}))->group("Model");
   verb->add_flag("--final-cut,!--no-final-cut", a.final_cut,
                  "generate twice the frames and cut [on for the CNN generator]")
       ->group("Model");
   option("--validation", a.validation, "time scales that the critic judges: all, every second, the last")
       ->check(CLI::IsMember({"dense", "mod2", "final"}))
       ->group("Model");
-  option("--level-weights", a.level_weights, "how their scores are weighted")
-      ->check(CLI::IsMember({"exp", "softmax"}))
-      ->group("Model");
-
-  option("--diff-input", a.diff_input, "what the RNN critic judges of changes: its LSTM's states, or them")
-      ->check(CLI::IsMember({"hidden", "difference"}))
-      ->group("Model");
-
+  add_shared_dvgan_options(*verb, a);
   option("--iterations", a.training.iterations, "how long to train")->check(positive())->group("Training");
-  option("--critic-steps", a.training.critic_steps, "in each iteration")
-      ->check(positive())
-      ->group("Training");
-  option("--batch", a.training.batch, "motions in a step")->check(positive())->group("Training");
-  option("--lambda", a.training.lambda_gp, "weight of the gradient penalty")
-      ->check(not_negative())
-      ->group("Training");
-  option("--learning-rate", a.training.adam.learning_rate, "Adam's, of both networks")
-      ->check(positive())
-      ->group("Training");
-  option("--beta1", a.training.adam.beta1, "Adam's")->check(below_one)->group("Training");
-  option("--beta2", a.training.adam.beta2, "Adam's")->check(below_one)->group("Training");
-  option("--epsilon", a.training.adam.epsilon, "Adam's")->check(not_negative())->group("Training");
   verb->add_flag("--shift,!--no-shift", a.training.input_shift,
                  "shift motions in time before the critic [on]")
       ->group("Training");
@@ -125,12 +103,7 @@ void add_train_dvgan(CLI::App& train, Job& job) {
       ->check(not_negative())
       ->group("Training");
 
-  option("--minutes", a.run.max_minutes, "stop (and save) after that long; 0: no limit")->group("Run");
-  option("--save-every", a.run.save_every_minutes, "minutes between two checkpoints; 0: only at the end")
-      ->group("Run");
-  option("--log-every", a.run.log_every, "iterations between two rows of log.csv")
-      ->check(positive())
-      ->group("Run");
+  add_run_options(*verb, a.run);
   verb->callback([&job, args, verb] {
     fill_in_procedural(*verb, *args);
     job = [args, verb] { return run_training(*args, *verb); };

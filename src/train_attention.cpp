@@ -4,6 +4,7 @@
 #include "motiongan/train/progress.hpp"
 #include "run_start.hpp"
 #include "signals.hpp"
+#include "training_options.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -195,7 +196,6 @@ void add_training_options(CLI::App& verb, AttentionArgs& a) {
   const auto option = [&](const char* name, auto& member, const char* text) {
     return verb.add_option(name, member, text)->capture_default_str()->group("Training");
   };
-  const CLI::Range below_one(0.0, 0.9999999, "0 .. 1");
   option("--iterations", t.iterations, "how long to train")->check(positive());
   option("--critic-steps", t.critic_steps, "in each iteration")->check(positive());
   option("--generator-steps", t.generator_steps, "in each iteration")->check(positive());
@@ -214,10 +214,7 @@ void add_training_options(CLI::App& verb, AttentionArgs& a) {
   verb.add_flag("--balanced,!--no-balanced", t.balanced,
                 "draw all classes alike, however many clips they have [on]")
       ->group("Training");
-  option("--learning-rate", t.adam.learning_rate, "Adam's, of all networks")->check(positive());
-  option("--beta1", t.adam.beta1, "Adam's")->check(below_one);
-  option("--beta2", t.adam.beta2, "Adam's")->check(below_one);
-  option("--epsilon", t.adam.epsilon, "Adam's")->check(not_negative());
+  add_adam_options(verb, t.adam, ", of all networks", "Training");
   option("--seed", t.seed, "of first weights, batches and noise")->check(not_negative());
 }
 
@@ -240,14 +237,7 @@ void add_train_attention(CLI::App& train, Job& job) {
                  "continue the run in --save; its options are those of its first start");
   add_model_options(*verb, a);
   add_training_options(*verb, a);
-  const auto option = [&](const char* name, auto& member, const char* text) {
-    return verb->add_option(name, member, text)->capture_default_str()->group("Run");
-  };
-  option("--minutes", a.run.max_minutes, "stop (and save) after that long; 0: no limit")
-      ->check(not_negative());
-  option("--save-every", a.run.save_every_minutes, "minutes between two checkpoints; 0: only at the end")
-      ->check(not_negative());
-  option("--log-every", a.run.log_every, "iterations between two rows of log.csv")->check(positive());
+  add_run_options(*verb, a.run);
   verb->callback([&job, args, verb] {
     default_procedural(*verb, args->data);
     job = [args, verb] { return run_training(*args, *verb); };

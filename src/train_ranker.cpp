@@ -4,6 +4,7 @@
 #include "ranking.hpp"
 #include "run_start.hpp"
 #include "signals.hpp"
+#include "training_options.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -79,7 +80,6 @@ void add_train_ranker(CLI::App& train, Job& job) {
   const auto option = [&](const char* name, auto& member, const char* text) {
     return verb->add_option(name, member, text)->capture_default_str();
   };
-  const CLI::Range below_one(0.0, 0.9999999, "0 .. 1");
   add_captioned_data_options(*verb, a);
   verb->add_option("--save", a.save, "folder of the run [save/NAME-ranker, NAME being the folder's]")
       ->type_name("DIR");
@@ -98,17 +98,9 @@ void add_train_ranker(CLI::App& train, Job& job) {
   option("--descriptions", t.descriptions, "to choose among in a step, at most")
       ->check(positive())
       ->group("Training");
-  option("--learning-rate", t.adam.learning_rate, "Adam's")->check(positive())->group("Training");
-  option("--beta1", t.adam.beta1, "Adam's")->check(below_one)->group("Training");
-  option("--beta2", t.adam.beta2, "Adam's")->check(below_one)->group("Training");
-  option("--epsilon", t.adam.epsilon, "Adam's")->check(not_negative())->group("Training");
+  add_adam_options(*verb, t.adam, "", "Training");
   option("--seed", t.seed, "of first weights and batches")->check(not_negative())->group("Training");
-  option("--minutes", a.run.max_minutes, "stop (and save) after that long; 0: no limit")->group("Run");
-  option("--save-every", a.run.save_every_minutes, "minutes between two checkpoints; 0: only at the end")
-      ->group("Run");
-  option("--log-every", a.run.log_every, "iterations between two rows of log.csv")
-      ->check(positive())
-      ->group("Run");
+  add_run_options(*verb, a.run);
   verb->callback([&job, args, verb] {
     fill_in_procedural(*verb, *args);
     job = [args, verb] { return run_training(*args, *verb); };

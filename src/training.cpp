@@ -2,6 +2,7 @@
 #include "training.hpp"
 
 #include "run_start.hpp"
+#include "training_options.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -32,6 +33,24 @@ void each_kept(TrainArgs& a, const F& f) {
 }
 
 }  // namespace
+
+void add_shared_dvgan_options(CLI::App& verb, TrainArgs& a) {
+  const auto option = [&](const char* group, const char* name, auto& member, const char* text) {
+    return verb.add_option(name, member, text)->capture_default_str()->group(group);
+  };
+  option("Model", "--hidden", a.model.hidden, "width of the networks")->check(positive());
+  option("Model", "--taps", a.model.taps, "of the convolutions")->check(CLI::IsMember({3, 5}));
+  option("Model", "--level-weights", a.level_weights, "how the scores of the time scales are weighted")
+      ->check(CLI::IsMember({"exp", "softmax"}));
+  option("Model", "--diff-input", a.diff_input,
+         "what the RNN critic judges of changes: its LSTM's states, or them")
+      ->check(CLI::IsMember({"hidden", "difference"}));
+  DvganTrainOptions& t = a.training;
+  option("Training", "--critic-steps", t.critic_steps, "in each iteration")->check(positive());
+  option("Training", "--batch", t.batch, "motions in a step")->check(positive());
+  option("Training", "--lambda", t.lambda_gp, "weight of the gradient penalty")->check(not_negative());
+  add_adam_options(verb, t.adam, ", of both networks", "Training");
+}
 
 std::string options_as_note(TrainArgs& args) {
   return note_of([&](const auto& f) { each_kept(args, f); });

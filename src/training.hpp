@@ -19,6 +19,9 @@ struct TrainArgs : CaptionedDataArgs {
   RunOptions run;
 };
 
+/// Adds to a verb the options of model and training that are not parts of the paper's comparison.
+void add_shared_dvgan_options(CLI::App& verb, TrainArgs& args);
+
 /// What is kept of the options, for a note in the checkpoint.
 std::string options_as_note(TrainArgs& args);
 

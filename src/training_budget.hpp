@@ -1,69 +1,102 @@
-// How long each of several models is trained, and which of them have had it: what keeps a second call from
-// training anything twice.
+// Training many models for the same time or the same number of iterations, so that a comparison that is
+// stopped goes on and trains nothing twice.
 #pragma once
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "command.hpp"
-#include "motiongan/motion/text_file.hpp"
-#include "motiongan/train/csv_log.hpp"
+#include "motiongan/train/progress.hpp"
 #include "motiongan/train/run.hpp"
+#include "signals.hpp"
 
 namespace motiongan::command {
 
-/// Of one model, in all its runs; 0: no limit.
+/// How long each model is trained.
 struct TrainingBudget {
-  double minutes = 0;
-  std::size_t iterations = 0;
-
-  /// Whether it allows no more than another.
-  bool within(const TrainingBudget& other) const {
-    const auto less = [](double wanted, double had) { return had == 0 || (wanted > 0 && wanted <= had); };
-    return less(minutes, other.minutes) &&
-           less(static_cast<double>(iterations), static_cast<double>(other.iterations));
-  }
-
-  /// "500 iterations or 20 min".
-  std::string text() const {
-    if (iterations == 0) return duration(60 * minutes);
-    return counted(iterations, "iteration") + (minutes > 0 ? " or " + duration(60 * minutes) : "");
-  }
+  double minutes = 0;             ///< 0: no limit
+  std::size_t iterations = 0;     ///< 0: no limit
+  double save_every_minutes = 5;  ///< of training
+  std::size_t log_every = 10;
 };
 
-inline fs::path budget_mark(const fs::path& folder) { return folder / "finished.json"; }
+/// Adds --minutes, --iterations, --save-every and --log-every to a verb; `each` is "for each variant".
+void add_budget_options(CLI::App& verb, TrainingBudget& budget, const std::string& each,
+                        const std::string& group);
 
-/// The budget that a model had when it was finished; nothing where it was not.
-inline std::optional<TrainingBudget> finished_budget(const fs::path& folder) {
-  const fs::path path = budget_mark(folder);
-  if (!fs::exists(path)) return std::nullopt;
-  const auto mark = nlohmann::json::parse(motion::read_text(path, "mark"), nullptr, false);
-  try {
-    return TrainingBudget{mark.at("minutes").get<double>(), mark.at("iterations").get<std::size_t>()};
-  } catch (const nlohmann::json::exception& error) {
-    throw Error(path.string(), " cannot be read: ", error.what(), "; remove it to train the model on");
-  }
-}
+/// Takes --iterations alone for the whole budget. Error for a budget without any limit.
+void settle_budget(const CLI::App& verb, TrainingBudget& budget);
+
+/// "20 min", "300 iterations", "300 iterations or 20 min".
+std::string described(const TrainingBudget& budget);
+
+/// Whether the run in a folder was finished with this budget or a larger one.
+bool has_had(const fs::path& folder, const TrainingBudget& budget);
+
+/// Writes that it was.
+void mark_finished(const fs::path& folder, const TrainingBudget& budget, std::size_t iterations_done);
 
 /// Seconds that a run has been trained for, up to its checkpoint: its log counts from every start anew.
-inline double seconds_trained(const RunFiles& files, std::size_t iterations) {
-  if (!fs::exists(files.log())) return 0;
-  const CsvTable log = read_csv_log(files.log());
-  const std::vector<double> rows = log.column("iteration"), seconds = log.column("seconds");
-  double sum = 0, last = 0;
-  for (std::size_t i = 0; i < rows.size() && rows[i] <= static_cast<double>(iterations); ++i) {
-    if (seconds[i] < last) sum += last;
-    last = seconds[i];
+double seconds_trained(const RunFiles& files, std::size_t iterations);
+
+namespace budget_detail {
+template <class Losses>
+std::vector<NamedValue> shown(const Losses& losses) {
+  std::vector<NamedValue> out;
+  for (const LossColumn& column : columns(losses)) out.emplace_back(column.first, column.second);
+  return out;
+}
+}  // namespace budget_detail
+
+/// Trains the run in run.save_dir on until its budget is used up; whether it got there, which it did not if a
+/// signal stopped it.
+template <class Losses, class Model, class Data, class Options>
+bool train_within(Model& model, const Data& data, const Options& options, BasicRunOptions<Losses> run,
+                  const TrainingBudget& budget, std::string_view name) {
+  const RunFiles files{run.save_dir};
+  std::size_t done = 0;
+  double minutes = 0;
+  run.resume = fs::exists(files.checkpoint());
+  if (run.resume) {
+    done = read_run_record(files.checkpoint()).iteration;
+    minutes = seconds_trained(files, done) / 60;
   }
-  return sum + last;
+  fmt::print("{}: training for {}{}\n", name, described(budget),
+             run.resume
+                 ? fmt::format("; {} after {} are done", counted(done, "iteration"), duration(60 * minutes))
+                 : "");
+  const bool time_is_left = budget.minutes == 0 || minutes < budget.minutes;
+  if (time_is_left && done < options.iterations) {
+    ProgressBar bar(0, {.label = std::string(name)});
+    bar.start(budget.iterations, done);
+    if (budget.minutes > 0) run.max_minutes = budget.minutes - minutes;
+    run.save_every_minutes = budget.save_every_minutes;
+    run.log_every = budget.log_every;
+    run.should_stop = [] { return caught_signal() != 0; };
+    run.report = [&](std::size_t iteration, const Losses& losses) {
+      bar.update(iteration, budget_detail::shown(losses));
+    };
+    done = train(model, data, options, run).iterations;
+    bar.finish();
+    if (caught_signal() != 0) {
+      fmt::print("{}: stopped after {}; the same command goes on\n", name, counted(done, "iteration"));
+      return false;
+    }
+  }
+  mark_finished(run.save_dir, budget, done);
+  fmt::print("{}: finished after {}\n", name, counted(done, "iteration"));
+  return true;
 }
 
-/// Writes down that the model in the folder has had its budget.
-inline void mark_finished(const fs::path& folder, const TrainingBudget& budget, std::size_t iterations) {
-  const nlohmann::json mark{{"minutes", budget.minutes},
-                            {"iterations", budget.iterations},
-                            {"iterations_done", iterations},
-                            {"seconds", seconds_trained(RunFiles{folder}, iterations)}};
-  motion::write_text_atomically(budget_mark(folder), mark.dump() + "\n");
+/// The same, but a run that diverges, as one without its penalty might, is told and does not cost the others
+/// their turn: it stays as it was last saved.
+template <class Train>
+bool unless_diverged(std::string_view name, const Train& train) {
+  try {
+    return train();
+  } catch (const Error& error) {
+    if (std::string_view(error.what()).find("training diverged") == std::string_view::npos) throw;
+    fmt::print(stderr, "motiongan: {}: {}\n", name, error.what());
+    return true;
+  }
 }
 
 }  // namespace motiongan::command
