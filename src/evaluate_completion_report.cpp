@@ -61,7 +61,11 @@ std::vector<std::string> notes_on(const CompletionData& data, const CompletionAr
   std::vector<std::string> notes{
       "Root of the sum of squared differences of Euler angles (radians, without the root), mean over 8 tests "
       "of each action; smaller is better. 50 frames are given, 25 predicted."};
-  std::vector<std::string> untrained;
+  std::vector<std::string> trained, untrained;
+  for (const CompletionRow& row : table.rows)
+    if (row.iterations > 0 && row.name.find("best of") == std::string::npos)
+      trained.push_back(fmt::format("{} {}", row.name.substr(0, row.name.find(';')), row.iterations));
+  if (!trained.empty()) notes.push_back("Iterations of training: " + listed(trained) + ".");
   for (std::size_t a = 0; a < data.actions().size(); ++a)
     if (data.train_count(a) == 0) untrained.push_back(data.actions()[a]);
   if (!untrained.empty() && table.rows.size() > 1)

@@ -32,6 +32,7 @@ TEST_CASE("all models are trained and measured, the published rows beside; a sec
   CHECK(said.has("lstm-3lr: finished after 2 iterations"));
   CHECK(said.has("dvgan: finished after 2 iterations"));
   CHECK(said.has("walking (3 training files)"));
+  CHECK(said.has("Iterations of training: lstm 2, seq2seq 2, erd 2, lstm-3lr 2, dvgan 2."));
   CHECK(said.has("mean of 2 actions"));
   CHECK(said.has("SRNN (published)           0.81  0.94  1.16  1.30     -     -"));
   CHECK_FALSE(said.has("true ms"));
