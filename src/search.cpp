@@ -176,7 +176,8 @@ void show_results(const Found& found, const SearchArgs& args, const motion::Moti
            motion::resample(aligned(format.to_motion(found.hypotheses[near.hypothesis]), near.shift), rate)});
   }
   if (found.results.size() > most) fmt::print("only the first {} are shown below\n", most);
-  show_page(args.html, shown, "\"" + args.text + "\" in " + args.collection);
+  show_page(args.html, shown, "\"" + args.text + "\" in " + args.collection,
+            1 + found.results.front().hit.nearest.size());
 }
 
 int search(const SearchArgs& args) {

@@ -20,11 +20,11 @@ inline motion::Motion for_page(const motion::Motion& motion, double rate) {
   return shown.frames > most_shown ? slice(shown, 0, most_shown) : shown;
 }
 
-/// Writes the page and says how to look at it.
+/// Writes the page and says how to look at it; motions that belong together come `group` at a time.
 inline void show_page(const fs::path& path, std::span<const view::ViewedMotion> motions,
-                      const std::string& title) {
+                      const std::string& title, std::size_t group = 1) {
   make_folder_of(path);
-  view::write_player(path, motions, {.title = title});
+  view::write_player(path, motions, {.title = title, .group = group});
   fmt::print("wrote {}: {} side by side; open it in a browser\n", path.string(),
              counted(motions.size(), "motion"));
 }

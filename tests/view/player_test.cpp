@@ -54,6 +54,8 @@ TEST_CASE("the page holds the positions of forward kinematics") {
   const auto data = nlohmann::json::parse(data_text(view::player_page(motions, {.title = "both"})));
   CHECK(data["title"] == "both");
   REQUIRE(data["clips"].size() == 2);
+  CHECK_FALSE(data.contains("group"));
+  CHECK(nlohmann::json::parse(data_text(view::player_page(motions, {.group = 2})))["group"] == 2);
   for (std::size_t c = 0; c < 2; ++c) {
     const auto& clip = data["clips"][c];
     const view::Figure figure = view::make_figure(motions[c]);

@@ -22,6 +22,7 @@ namespace motiongan::view {
 struct PlayerOptions {
   std::string title = "motion";  ///< of the page, UTF-8
   double max_rate = 60;          ///< frames per second; faster motions are thinned to keep the page small
+  std::size_t group = 1;         ///< so many motions at a time belong together and stand in one row
 };
 
 namespace detail {
@@ -129,7 +130,10 @@ inline std::string player_page(std::span<const ViewedMotion> motions, const Play
   require(!motions.empty(), "a page to play motions was asked for, but no motion was given");
   require(options.max_rate > 0, "the greatest frame rate of a page is ", options.max_rate,
           "; expected a positive number of frames per second");
-  std::string clips = "{\"title\":" + detail::json_string(options.title) + ",\"clips\":[";
+  require(options.group > 0, "motions in groups of 0 were asked for; expected at least 1");
+  std::string clips = "{\"title\":" + detail::json_string(options.title) +
+                      (options.group > 1 ? ",\"group\":" + std::to_string(options.group) : "") +
+                      ",\"clips\":[";
   for (std::size_t i = 0; i < motions.size(); ++i)
     clips += (i > 0 ? ",\n" : "\n") + detail::json_clip(motions[i], options.max_rate);
   clips += "]}";
