@@ -31,7 +31,9 @@ void print_tables(const RankerEvaluation& e, const EvaluateRankerArgs& args) {
   const Retrieval& r = e.retrieval;
   const std::string k = std::to_string(r.descriptions);
   std::vector<std::vector<std::string>> rows{row("random", k, random_recall(r.descriptions)),
-                                             row("this ranker", k, r.recall)};
+                                             row("most common first", k, blind_recall(e.real.right)),
+                                             row("this ranker", k, r.recall),
+                                             row("  each description alike", k, r.by_description())};
   for (const paper::RankerRow& p : paper::table1)
     rows.push_back(row(fmt::format("paper, CMU: {}", p.name), "250", p.cmu));
   for (const paper::RankerRow& p : paper::table1)
@@ -82,7 +84,9 @@ void write_json(const RankerEvaluation& e, const Ranker& ranker, const fs::path&
                            {"clips", e.real.clips},
                            {"windows", e.retrieval.samples},
                            {"recall", recalls(e.retrieval.recall)},
+                           {"recall_by_description", recalls(e.retrieval.by_description())},
                            {"random", recalls(random_recall(e.retrieval.descriptions))},
+                           {"most_common_first", recalls(blind_recall(e.real.right))},
                            {"mean_rank", e.retrieval.mean_rank},
                            {"inception_score_nats", e.inception_score},
                            {"inception_score_exp", std::exp(e.inception_score)},

@@ -42,6 +42,15 @@ TEST_CASE("recall by hand") {
   CHECK(r.parts[2].mean_rank == 4);
 }
 
+TEST_CASE("descriptions alike, and ranking blindly") {
+  const Right right{{0}, {0}, {0}, {2, 1}};
+  const std::vector<float> scores{2, 1, 0, 2, 1, 0, 0, 1, 2, 2, 1, 0};  // ranks 1, 1, 3, 1
+  const Retrieval r = retrieval(scores, 3, right);
+  CHECK(r.recall[0] == doctest::Approx(100 * 2.0 / 4));
+  CHECK(r.by_description()[0] == doctest::Approx((100 * 2.0 / 3 + 0) / 2));
+  CHECK(blind_recall(right) == Recall{75, 100, 100, 100});
+}
+
 TEST_CASE("guessing") {
   CHECK(random_recall(250) == Recall{0.4, 1.2, 2.0, 4.0});  // Table 1's random row
   CHECK(random_recall(15)[3] == doctest::Approx(66.7).epsilon(1e-3));

@@ -39,7 +39,29 @@ struct Retrieval {
   Recall recall{};
   double mean_rank = 0;
   std::vector<Part> parts;  ///< in the order of the descriptions; those without a sample are left out
+
+  /// Mean of the parts' recall: every description counts alike, however many samples it has.
+  Recall by_description() const {
+    Recall out{};
+    for (const Part& part : parts)
+      for (std::size_t i = 0; i < out.size(); ++i)
+        out[i] += part.recall[i] / static_cast<double>(parts.size());
+    return out;
+  }
 };
+
+/// What always ranking description 0 first, then 1 and so on comes to, whatever the motion: where
+/// descriptions stand in the order of how common they are, the best that can be done blindly. Far above
+/// chance if a few descriptions have most of the samples.
+inline Recall blind_recall(std::span<const std::vector<std::size_t>> right) {
+  require(!right.empty(), "there is no sample to rank descriptions for");
+  Recall out{};
+  for (const std::vector<std::size_t>& of : right)
+    for (std::size_t i = 0; i < out.size(); ++i)
+      if (*std::min_element(of.begin(), of.end()) < recall_ranks[i])
+        out[i] += 100 / static_cast<double>(right.size());
+  return out;
+}
 
 /// The rank of the best of the `right` descriptions, from 1. Equal scores count against it: a ranker that
 /// cannot tell two descriptions apart has not found either.
