@@ -1,4 +1,5 @@
 // motiongan search: the clips of a collection that move as a text says.
+#include <future>
 #include <nlohmann/json.hpp>
 
 #include "motiongan/eval/search_collection.hpp"
@@ -44,15 +45,13 @@ std::vector<std::string> captions_of(const motion::Captions& captions, const std
   return {};
 }
 
-Found find(const Dvgan& model, const SearchArgs& args, const SearchCollection& collection) {
+Found find(const Dvgan& model, const SearchArgs& args, const SearchCollection& collection,
+           std::vector<std::vector<float>> hypotheses) {
   const SearchIndex& index = collection.index;
   const motion::MotionFormat& format = model.format();
   Found found;
   found.hop = args.hop > 0 ? args.hop : std::max<std::size_t>(1, format.frames / 2);
-  GenerateOptions options;
-  options.count = args.hypotheses;
-  options.seed = args.seed;
-  found.hypotheses = model.generate_poses(args.text, options);
+  found.hypotheses = std::move(hypotheses);
   const std::vector<SearchWindow> windows = index.windows(found.hop);
   const SearchWindows search(model.context(), format, index.frames(), index.starts(windows),
                              {.keep_bytes = 0});
@@ -191,12 +190,19 @@ int search(const SearchArgs& args) {
   const Dvgan model = Dvgan::load(context, file);
   const motion::MotionFormat& format = model.format();
   warn_of_unknown_words(format.vocabulary, args.text);
-  const SearchCollection collection = open_search_collection(args.collection, format, args.index);
+  // The index comes from the disk while the device makes the hypotheses.
+  auto opened = std::async(std::launch::async,
+                           [&] { return open_search_collection(args.collection, format, args.index); });
+  GenerateOptions options;
+  options.count = args.hypotheses;
+  options.seed = args.seed;
+  std::vector<std::vector<float>> hypotheses = model.generate_poses(args.text, options);
+  const SearchCollection collection = opened.get();
   for (const std::string& warning : collection.warnings) fmt::print(stderr, "motiongan: {}\n", warning);
   if (collection.written)
     fmt::print(stderr, "index {}: {} read, {} kept, {} removed\n", collection.file.string(),
                counted(collection.read, "file"), collection.kept, collection.removed);
-  const Found found = find(model, args, collection);
+  const Found found = find(model, args, collection, std::move(hypotheses));
   if (args.json != "-") print_results(found, args, format);
   if (!args.json.empty()) {
     // A path that is not UTF-8 shall not keep the rest from being told.

@@ -71,17 +71,59 @@ inline std::string checksum(const io::SafeTensors& file) {
   return hexadecimal(hash);
 }
 
-/// The numbers as they are stored, in one go.
-template <class T>
-std::vector<T> values(const io::SafeTensors& file, const char* name, const char* dtype) {
-  const io::SafeTensor& tensor = file.at(name);
-  require(tensor.dtype == dtype, "tensor \"", name, "\" is of type ", tensor.dtype, ", expected ", dtype);
-  std::vector<T> out(tensor.data.size() / sizeof(T));
-  if (!out.empty()) std::memcpy(out.data(), tensor.data.data(), out.size() * sizeof(T));
-  return out;
-}
-
 inline constexpr const char *version_key = "motiongan_search_index", *version = "1";
+
+/// A safetensors file whose tensors go straight to where they are wanted: an index is large, and each copy of
+/// it costs a good part of a query.
+class IndexFile {
+ public:
+  explicit IndexFile(const std::filesystem::path& path) : where_(path.string()), in_(path, std::ios::binary) {
+    std::error_code problem;
+    const std::uint64_t size = std::filesystem::file_size(path, problem);
+    std::uint64_t length = 0;
+    require(in_.is_open() && !problem, where_, ": cannot be opened");
+    read(&length, sizeof length);
+    require(length <= size - sizeof length, where_, ": was cut short or is no safetensors file");
+    std::string text(length, '\0');
+    read(text.data(), text.size());
+    begin_ = sizeof length + length;
+    header_ = io::parse_safetensors_header(text, size - begin_, where_);
+  }
+
+  std::string metadata(const char* key) const {
+    const auto found = header_.metadata.find(key);
+    return found == header_.metadata.end() ? std::string() : found->second;
+  }
+
+  /// The numbers of a tensor as they are stored.
+  template <class T>
+  std::vector<T> values(const char* name, std::string_view dtype) {
+    const auto found = header_.entries.find(name);
+    require(found != header_.entries.end(), where_, ": there is no tensor \"", name, "\"");
+    const auto& entry = found->second;
+    require(entry.dtype == dtype, where_, ": tensor \"", name, "\" is of type ", entry.dtype, ", expected ",
+            dtype);
+    std::vector<T> out((entry.offsets[1] - entry.offsets[0]) / sizeof(T));
+    in_.seekg(static_cast<std::streamoff>(begin_ + entry.offsets[0]));
+    read(out.data(), out.size() * sizeof(T));
+    hash_ = digest(out.data(), out.size() * sizeof(T), hash_);
+    return out;
+  }
+
+  /// Of the tensors read so far, as checksum() has it if they were all read in the order of their names.
+  std::string checksum_so_far() const { return hexadecimal(hash_); }
+
+ private:
+  void read(void* to, std::size_t bytes) {
+    in_.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes));
+    require(static_cast<std::size_t>(in_.gcount()) == bytes, where_, ": cannot be read to its end");
+  }
+
+  std::string where_;
+  std::ifstream in_;
+  std::uint64_t begin_ = 0, hash_ = digest(nullptr, 0);
+  io::SafeTensorsHeader header_;
+};
 
 }  // namespace search_detail
 
@@ -176,23 +218,19 @@ class SearchIndex {
   /// is wrong, where the file is damaged or no index.
   static std::optional<SearchIndex> read(const std::filesystem::path& path,
                                          const motion::MotionFormat& format) {
-    const io::SafeTensors file = io::SafeTensors::read(path);
-    const auto meta = [&](const char* key) {
-      const auto found = file.metadata.find(key);
-      return found == file.metadata.end() ? std::string() : found->second;
-    };
-    require(meta(search_detail::version_key) == search_detail::version, path.string(),
+    search_detail::IndexFile file(path);
+    require(file.metadata(search_detail::version_key) == search_detail::version, path.string(),
             ": not a search index of this version");
-    if (meta("search_format") != search_key(format)) return std::nullopt;
-    require(meta("checksum") == search_detail::checksum(file), path.string(), ": its checksum is wrong");
+    if (file.metadata("search_format") != search_key(format)) return std::nullopt;
     SearchIndex index(format);
-    index.frames_.plain = search_detail::values<float>(file, "plain", "F32");
-    index.frames_.track = search_detail::values<float>(file, "track", "F32");
-    const auto size = search_detail::values<std::int64_t>(file, "size", "I64");
-    const auto modified = search_detail::values<std::int64_t>(file, "modified", "I64");
-    const auto frames = search_detail::values<std::int64_t>(file, "frames", "I64");
-    const auto begin = search_detail::values<double>(file, "begin", "F64");
-    const auto names = search_detail::values<char>(file, "names", "U8");
+    const auto begin = file.values<double>("begin", "F64");
+    const auto frames = file.values<std::int64_t>("frames", "I64");
+    const auto modified = file.values<std::int64_t>("modified", "I64");
+    const auto names = file.values<char>("names", "U8");
+    index.frames_.plain = file.values<float>("plain", "F32");
+    const auto size = file.values<std::int64_t>("size", "I64");
+    index.frames_.track = file.values<float>("track", "F32");
+    require(file.metadata("checksum") == file.checksum_so_far(), path.string(), ": its checksum is wrong");
     const std::size_t n = size.size();
     require(modified.size() == n && frames.size() == n && begin.size() == n, path.string(),
             ": its lists of clips differ in length");
