@@ -192,6 +192,13 @@ TEST_CASE("train() stopped and resumed: files, log and parameters of an unbroken
   CHECK(rows(scratch.path / "whole" / "log.csv").size() == 7);
   CHECK(rows(scratch.path / "parts" / "log.csv") == rows(scratch.path / "whole" / "log.csv"));
 
+  // Killed before its first checkpoint: only the log is there. The same call begins anew and keeps it aside.
+  fs::create_directories(scratch.path / "killed");
+  std::ofstream(scratch.path / "killed" / "log.csv") << "iteration,seconds\n1,0.5\n";
+  CHECK(run_once(scratch.path / "killed", false, 1000).iterations == 6);
+  CHECK(rows(scratch.path / "killed" / "log.csv") == rows(scratch.path / "whole" / "log.csv"));
+  CHECK(fs::file_size(scratch.path / "killed" / "log.unsaved.csv") == 24);
+
   CHECK(says(message_of([&] { run_once(scratch.path / "whole", false, 1); }), "already holds a run"));
   CHECK(says(message_of([&] { run_once(scratch.path / "new", true, 1); }), "no such file"));
 }

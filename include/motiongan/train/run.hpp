@@ -31,6 +31,8 @@ struct RunFiles {
   std::filesystem::path critic() const { return network("critic"); }
   std::filesystem::path checkpoint() const { return folder / "checkpoint.safetensors"; }
   std::filesystem::path log() const { return folder / "log.csv"; }
+  /// What a run logged that was killed before its first checkpoint, once another one begins in its place.
+  std::filesystem::path unsaved_log() const { return folder / "log.unsaved.csv"; }
   std::filesystem::path split() const { return folder / "split.tsv"; }
   std::filesystem::path network(const std::string& name) const { return folder / (name + ".safetensors"); }
 };
@@ -61,6 +63,9 @@ RunResult run_training(Trainer& trainer, const Data& data, std::size_t iteration
     else
       require(!std::filesystem::exists(files.checkpoint()), files.checkpoint().string(),
               " already holds a run; resume it, or choose another folder");
+    // A log without a checkpoint is of a run that was killed before it saved anything.
+    if (!run.resume && std::filesystem::exists(files.log()))
+      std::filesystem::rename(files.log(), files.unsaved_log());
     data.write_split(files.split());
     std::vector<std::string> names{"seconds", "iterations_per_second"};
     for (const LossColumn& column : columns(Losses{})) names.emplace_back(column.first);
