@@ -12,6 +12,9 @@
 #include <thread>
 
 #include "steps.hpp"
+#ifdef MOTIONGAN_HAVE_OPENBLAS
+#include <cblas.h>
+#endif
 
 using namespace motiongan;
 
@@ -41,8 +44,10 @@ std::vector<float> numbers(std::size_t count, unsigned seed) {
   return out;
 }
 
+#if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC push_options
 #pragma GCC optimize("O3")
+#endif
 /// The peer: for each window and hypothesis all pairs of frames that a shift brings together, then the sums
 /// along them. Squares of differences, so that it loses no digits; the root is counted from the window's
 /// first frame only (the search counts it anew at every shift, which would cost the peer more).
@@ -74,7 +79,9 @@ float plain_search(const std::vector<float>& poses, std::size_t first, std::size
     }
   return total;
 }
+#if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC pop_options
+#endif
 
 /// Milliseconds that the loops take for all clips, from a share of them.
 double peer_ms(const std::vector<float>& poses, const std::vector<std::vector<float>>& made) {
@@ -93,6 +100,26 @@ double peer_ms(const std::vector<float>& poses, const std::vector<std::vector<fl
   }
   return 1e3 * best * share;
 }
+
+#ifdef MOTIONGAN_HAVE_OPENBLAS
+/// Milliseconds of OpenBLAS for the products of all frames of the clips with all frames of the hypotheses, in
+/// pieces that stay in the caches, and nothing else: what a search without spectra must at least do.
+double openblas_ms(const std::vector<float>& poses, const std::vector<std::vector<float>>& made) {
+  constexpr std::size_t rows = 2000, columns = hypotheses * frames;
+  std::vector<float> all, products(rows * columns);
+  for (const std::vector<float>& one : made) all.insert(all.end(), one.begin(), one.end());
+  double best = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 5; ++i) {
+    const double start = bench::seconds();
+    for (std::size_t row = 0; row < clips * frames; row += rows)
+      cblas_sgemm(CblasRowMajor, CblasNoTrans, CblasTrans, static_cast<int>(rows), static_cast<int>(columns),
+                  static_cast<int>(dof), 1, &poses[row * dof], static_cast<int>(dof), all.data(),
+                  static_cast<int>(dof), 0, products.data(), static_cast<int>(columns));
+    best = std::min(best, bench::seconds() - start);
+  }
+  return 1e3 * best;
+}
+#endif
 
 /// Wall milliseconds of the command.
 double command_ms(const std::string& line) {
@@ -130,7 +157,8 @@ int run(const Options& options) {
   // Beside the products of spectra, which gemm counts: two sums over frequencies a shift and hypothesis (one
   // multiply-add for the real and the imaginary part each), five multiply-adds a frame that overlaps for the
   // root; and, where windows are loaded, their spectra.
-  constexpr double n = frames, reach = frames / 2, frequencies = (frames + frames / 2) / 2 + 1;
+  constexpr std::size_t half = frames / 2, spectrum = (frames + half) / 2 + 1;
+  constexpr double n = frames, reach = half, frequencies = spectrum;
   const double nearest =
       2.0 * clips * hypotheses *
       ((reach + 1) * frequencies * 2 + 5 * (n + 2 * (n * reach - reach * (reach + 1) / 2)));
@@ -148,6 +176,13 @@ int run(const Options& options) {
       line.extra["loops_ms"] = ms;
       line.extra["ratio_loops"] = ms / line.ms;
     }
+#ifdef MOTIONGAN_HAVE_OPENBLAS
+    const double products = openblas_ms(poses, made);  // last: its threads spin on
+    for (bench::Measured& line : lines) {
+      line.extra["openblas_all_pairs_ms"] = products;
+      line.extra["ratio_openblas"] = products / line.ms;
+    }
+#endif
   }
   if (!options.model.empty()) {
     const std::string index = (std::filesystem::temp_directory_path() / "bench_search.safetensors").string();

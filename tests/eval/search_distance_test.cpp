@@ -132,7 +132,7 @@ TEST_CASE(
       CAPTURE(shift);
       // Frame t of hypothesis 2 on frame t + shift of the second window.
       std::vector<float> clip = normals(3 * n * dof, 9);
-      const std::size_t first = static_cast<std::size_t>(static_cast<int>(n) + shift);
+      const auto first = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(n) + shift);
       std::copy(hypotheses[2].begin(), hypotheses[2].end(),
                 clip.begin() + static_cast<std::ptrdiff_t>(first * dof));
       if (const auto turning = format.turning()) {  // somewhere else, looking another way
