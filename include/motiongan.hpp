@@ -102,6 +102,7 @@
 #include "motiongan/eval/inception_score.hpp"
 #include "motiongan/eval/jerk.hpp"
 #include "motiongan/eval/joint_angle.hpp"
+#include "motiongan/eval/mean_spread.hpp"
 #include "motiongan/eval/model_evaluation.hpp"
 #include "motiongan/eval/motion_quality.hpp"
 #include "motiongan/eval/npss.hpp"

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "motiongan/eval/mean_spread.hpp"
 #include "motiongan/models/attention_classifier.hpp"
 #include "motiongan/optim/adam.hpp"
 #include "motiongan/sample/action_generate.hpp"
@@ -41,19 +42,6 @@ struct AugmentationStudyRow {
   std::uint64_t seed = 0;
   StudyAccuracy real, augmented;
 };
-
-/// Mean and sample standard deviation.
-struct MeanSpread {
-  double mean = 0, spread = 0;
-};
-inline MeanSpread mean_spread(std::span<const double> values) {
-  require(!values.empty(), "the mean of no values was asked for");
-  MeanSpread out;
-  for (const double v : values) out.mean += v / static_cast<double>(values.size());
-  for (const double v : values) out.spread += (v - out.mean) * (v - out.mean);
-  out.spread = values.size() > 1 ? std::sqrt(out.spread / static_cast<double>(values.size() - 1)) : 0;
-  return out;
-}
 
 /// Synthetic clips as clips of the data set: its normalizer, its numbers of classes.
 inline std::vector<motion::ActionClip> as_clips_of(const motion::ActionDataset& data,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "motiongan/eval/mean_spread.hpp"
 #include "motiongan/eval/model_evaluation.hpp"
 #include "motiongan/eval/paper_tables.hpp"
 #include "motiongan/train/dvgan_trainer.hpp"
@@ -101,23 +102,6 @@ inline DvganVariant dvgan_variant(std::string_view name) {
               "-shift and -cut where they are on, as cnn-cnn-dense-shift-cut or rnn-rnn");
 }
 
-/// A mean over seeds, and how far they lie apart.
-struct MeanSpread {
-  std::size_t count = 0;
-  double mean = 0;
-  double spread = 0;  ///< standard deviation with n - 1; 0 for one value
-};
-
-inline MeanSpread mean_spread(std::span<const double> values) {
-  MeanSpread out{values.size(), 0, 0};
-  if (values.empty()) return out;
-  const auto n = static_cast<double>(values.size());
-  for (const double v : values) out.mean += v / n;
-  for (const double v : values) out.spread += (v - out.mean) * (v - out.mean);
-  out.spread = values.size() < 2 ? 0 : std::sqrt(out.spread / (n - 1));
-  return out;
-}
-
 /// One training of the comparison, measured.
 struct DvganRun {
   std::uint64_t seed = 0;
@@ -160,13 +144,14 @@ inline std::span<const AblationColumn> ablation_columns() {
 }
 
 /// The difference b - a of a number, run by run of equal seeds: what the spread of a single row hides.
+/// A count of 0 where no seed is in both.
 template <class Measure>
 MeanSpread paired_difference(const DvganAblationRow& a, const DvganAblationRow& b, const Measure& measure) {
   std::vector<double> differences;
   for (const DvganRun& x : a.runs)
     for (const DvganRun& y : b.runs)
       if (x.seed == y.seed) differences.push_back(measure(y.evaluation) - measure(x.evaluation));
-  return mean_spread(differences);
+  return differences.empty() ? MeanSpread{} : mean_spread(differences);
 }
 
 }  // namespace motiongan
