@@ -1,17 +1,18 @@
 // Generative search over 10,000 clips: 16 hypotheses of 32 frames, 69 numbers a pose of which three (x, z and
 // yaw) are counted anew at every shift, 33 shifts.
-//   bench_search [--json] [--seconds 4] [--peer none] [--model MODEL --collection DIR [--command motiongan]]
+//   bench_search [--json] [--seconds 4] [--peer none|benchmarks/ranker_peer.py] [--model MODEL --collection
+//   DIR [--command motiongan]]
 // Poses are made in memory; no file is read. The peer is the same search as loops over windows, hypotheses
 // and dimensions in C++ (-O3, single precision, both cores), on fewer windows. With --model and --collection
 // the command itself is timed: the first query with an index to be made of the collection's files, then later
-// ones.
+// ones. And a ranker's training step, beside PyTorch with --peer benchmarks/ranker_peer.py.
 #include <cstdlib>
 #include <filesystem>
 #include <motiongan/eval/search_windows.hpp>
 #include <random>
 #include <thread>
 
-#include "steps.hpp"
+#include "ranker_steps.hpp"
 #ifdef MOTIONGAN_HAVE_OPENBLAS
 #include <cblas.h>
 #endif
@@ -130,6 +131,7 @@ double command_ms(const std::string& line) {
 
 struct Options {
   bool json = false, peer = true;
+  std::string torch;  // a script that times PyTorch's rankers
   double seconds = 4;
   std::string model, collection, command = "motiongan";
 };
@@ -198,7 +200,22 @@ int run(const Options& options) {
     std::filesystem::remove(index);
     lines.push_back(first), lines.push_back(later);
   }
+  for (bench::Measured& line : bench::ranker_steps(context, options.seconds))
+    lines.push_back(std::move(line));
   const double ceiling = peak.measure();
+  if (!options.torch.empty()) {
+    std::string version;
+    const auto theirs = bench::peer_times(options.torch, "ranker", version);
+    if (theirs.empty())
+      std::fprintf(stderr, "bench_search: %s printed no times (it needs python3 with torch)\n",
+                   options.torch.c_str());
+    for (bench::Measured& line : lines)
+      if (const auto found = theirs.find(line.name); found != theirs.end()) {
+        line.extra["torch_ms"] = found->second;
+        line.extra["torch"] = version;
+        line.extra["ratio_torch"] = found->second / line.ms;
+      }
+  }
   for (const bench::Measured& line : lines) {
     const double gflops = line.gflop / line.ms * 1e3;
     nlohmann::ordered_json json{{"name", line.name}, {"ms", line.ms}};
@@ -227,13 +244,14 @@ Options read_options(int argc, char** argv) {
       continue;
     }
     require(i + 1 < argc, "unknown argument ", name,
-            "; usage: bench_search [--json] [--seconds 4] [--peer none] [--model MODEL --collection DIR "
+            "; usage: bench_search [--json] [--seconds 4] [--peer none|ranker_peer.py] [--model MODEL "
+            "--collection DIR "
             "[--command motiongan]]");
     const std::string value = argv[++i];
     if (name == "--seconds")
       options.seconds = std::atof(value.c_str());
     else if (name == "--peer")
-      options.peer = value != "none";
+      options.peer = value != "none", options.torch = options.peer ? value : "";
     else if (name == "--model")
       options.model = value;
     else if (name == "--collection")
