@@ -41,7 +41,7 @@ TEST_CASE("real windows: so many of each description, all of them right ones") {
   CHECK(real.measures.motions == 5 * k);
   CHECK(real.features.size() == 5 * k * 16);
   REQUIRE(real.measures.retrieval.parts.size() == k);
-  for (const Retrieval::Part& part : real.measures.retrieval.parts) CHECK(part.samples == 5);
+  for (const Retrieval::Part& part : real.measures.retrieval.parts) CHECK(part.samples >= 5);
   CHECK(real.measures.inception_score >= 0);
   CHECK(real.measures.inception_score <= std::log(static_cast<double>(k)));
   CHECK(real.measures.diversity > real.measures.multimodality);

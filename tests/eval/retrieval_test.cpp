@@ -16,13 +16,13 @@ using Right = std::vector<std::vector<std::size_t>>;
 
 TEST_CASE("ranks count from one, and ties count against") {
   const std::vector<float> scores{3, 1, 2, 2};
-  const auto rank = [&](std::vector<std::size_t> right) { return rank_of_right(scores, right); };
-  CHECK(rank({0}) == 1);
-  CHECK(rank({1}) == 4);
-  CHECK(rank({2}) == 3);     // 3 is as good
-  CHECK(rank({2, 3}) == 2);  // both are right: only 0 is better
-  CHECK(rank({1, 0}) == 1);
-  CHECK(rank_of_right(std::vector<float>{1, NAN}, std::vector<std::size_t>{0}) == 2);
+  const auto rank = [&](std::size_t d, std::vector<std::size_t> right) { return rank_of(scores, d, right); };
+  CHECK(rank(0, {0}) == 1);
+  CHECK(rank(1, {1}) == 4);
+  CHECK(rank(2, {2}) == 3);     // 3 is as good
+  CHECK(rank(2, {2, 3}) == 2);  // both are right: only 0 is better
+  CHECK(rank(1, {1, 0}) == 3);
+  CHECK(rank_of(std::vector<float>{1, NAN}, 0, std::vector<std::size_t>{0}) == 2);
 }
 
 TEST_CASE("recall by hand") {
@@ -31,7 +31,7 @@ TEST_CASE("recall by hand") {
                                   5, 4, 3, 2, 1, 0,   //
                                   5, 4, 3, 2, 1, 0,   //
                                   5, 4, 3, 2, 1, 0};  //
-  const Retrieval r = retrieval(scores, 6, Right{{0}, {1}, {3}, {5, 5}});
+  const Retrieval r = retrieval(scores, 6, Right{{0}, {1}, {3}, {5}});
   CHECK(r.descriptions == 6);
   CHECK(r.samples == 4);
   CHECK(r.recall == Recall{25, 50, 75, 100});
@@ -44,10 +44,15 @@ TEST_CASE("recall by hand") {
 
 TEST_CASE("descriptions alike, and ranking blindly") {
   const Right right{{0}, {0}, {0}, {2, 1}};
-  const std::vector<float> scores{2, 1, 0, 2, 1, 0, 0, 1, 2, 2, 1, 0};  // ranks 1, 1, 3, 1
+  const std::vector<float> scores{2, 1, 0, 2, 1, 0, 0, 1, 2, 2, 1, 0};  // ranks 1, 1, 3, 2
   const Retrieval r = retrieval(scores, 3, right);
   CHECK(r.recall[0] == doctest::Approx(100 * 2.0 / 4));
-  CHECK(r.by_description()[0] == doctest::Approx((100 * 2.0 / 3 + 0) / 2));
+  // Only description 0 is wrong for the last sample: it is before both right ones.
+  REQUIRE(r.parts.size() == 3);
+  CHECK(r.parts[1].samples == 1);
+  CHECK(r.parts[1].mean_rank == 2);
+  CHECK(r.parts[2].mean_rank == 2);
+  CHECK(r.by_description()[0] == doctest::Approx((100 * 2.0 / 3 + 0 + 0) / 3));
   CHECK(blind_recall(right) == Recall{75, 100, 100, 100});
 }
 
@@ -62,7 +67,8 @@ TEST_CASE("bad scores are refused") {
                retrieval(std::vector<float>(5), 2, Right{{0}, {1}});
              }),
              "5 scores of 2 samples, expected 2 each"));
-  CHECK(says(message_of([] { retrieval(std::vector<float>(2), 2, Right{{}}); }), "without a right"));
+  CHECK(says(message_of([] { retrieval(std::vector<float>(2), 2, Right{{}}); }),
+             "sample 0 has no right description"));
   CHECK(says(message_of([] { retrieval(std::vector<float>(2), 2, Right{{2}}); }), "description 2 of 2"));
   CHECK(says(message_of([] { inception_score(std::vector<float>(5), 2); }), "5 scores over 2"));
 }

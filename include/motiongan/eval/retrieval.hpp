@@ -38,7 +38,7 @@ struct Retrieval {
   std::size_t samples = 0;
   Recall recall{};
   double mean_rank = 0;
-  std::vector<Part> parts;  ///< in the order of the descriptions; those without a sample are left out
+  std::vector<Part> parts = {};  ///< in the order of the descriptions; those without a sample are left out
 
   /// Mean of the parts' recall: every description counts alike, however many samples it has.
   Recall by_description() const {
@@ -63,52 +63,51 @@ inline Recall blind_recall(std::span<const std::vector<std::size_t>> right) {
   return out;
 }
 
-/// The rank of the best of the `right` descriptions, from 1. Equal scores count against it: a ranker that
-/// cannot tell two descriptions apart has not found either.
-inline std::size_t rank_of_right(std::span<const float> scores, std::span<const std::size_t> right) {
-  require(!right.empty(), "a sample without a right description cannot be ranked");
-  std::size_t best = scores.size();
-  for (const std::size_t r : right) {
-    require(r < scores.size(), "description ", r, " of ", scores.size());
-    std::size_t rank = 1;
-    for (std::size_t d = 0; d < scores.size(); ++d) {
-      const bool other = std::find(right.begin(), right.end(), d) == right.end();
-      rank += other && !(scores[d] < scores[r]) ? 1 : 0;
-    }
-    best = std::min(best, rank);
-  }
-  return best;
+/// The rank of description `d`, from 1, among those that are not `right` too. Equal scores count against it:
+/// a ranker that cannot tell two descriptions apart has not found either.
+inline std::size_t rank_of(std::span<const float> scores, std::size_t d, std::span<const std::size_t> right) {
+  require(d < scores.size(), "description ", d, " of ", scores.size());
+  std::size_t rank = 1;
+  for (std::size_t other = 0; other < scores.size(); ++other)
+    if (other != d && std::find(right.begin(), right.end(), other) == right.end() &&
+        !(scores[other] < scores[d]))
+      ++rank;
+  return rank;
 }
 
-/// Of `scores` [n, K], where sample s is rightly described by any of `right[s]`; a sample counts among those
-/// of its first right description. Every sample counts alike.
+/// Of `scores` [n, K], where sample s is rightly described by any of `right[s]`: its rank is that of the best
+/// of them. In the parts it counts for each of them, with that one's rank. Every sample counts alike.
 inline Retrieval retrieval(std::span<const float> scores, std::size_t descriptions,
                            std::span<const std::vector<std::size_t>> right) {
   require(descriptions > 0 && scores.size() == right.size() * descriptions, "found ", scores.size(),
           " scores of ", right.size(), " samples, expected ", descriptions, " each");
   require(!right.empty(), "there is no sample to rank descriptions for");
-  Retrieval out;
-  out.descriptions = descriptions;
-  out.samples = right.size();
+  Retrieval out{.descriptions = descriptions, .samples = right.size()};
   std::vector<Retrieval::Part> parts(descriptions);
+  const auto add = [](Recall& recall, std::size_t rank) {
+    for (std::size_t i = 0; i < recall_ranks.size(); ++i) recall[i] += rank <= recall_ranks[i] ? 100.0 : 0.0;
+  };
   for (std::size_t s = 0; s < right.size(); ++s) {
-    const std::size_t rank = rank_of_right(scores.subspan(s * descriptions, descriptions), right[s]);
-    Retrieval::Part& part = parts[right[s].front()];
-    ++part.samples;
-    part.mean_rank += static_cast<double>(rank);
-    for (std::size_t i = 0; i < recall_ranks.size(); ++i)
-      part.recall[i] += rank <= recall_ranks[i] ? 100.0 : 0.0;
+    require(!right[s].empty(), "sample ", s, " has no right description");
+    std::size_t best = descriptions;
+    for (const std::size_t d : right[s]) {
+      const std::size_t rank = rank_of(scores.subspan(s * descriptions, descriptions), d, right[s]);
+      best = std::min(best, rank);
+      ++parts[d].samples;
+      parts[d].mean_rank += static_cast<double>(rank);
+      add(parts[d].recall, rank);
+    }
+    out.mean_rank += static_cast<double>(best);
+    add(out.recall, best);
   }
+  out.mean_rank /= static_cast<double>(out.samples);
+  for (double& r : out.recall) r /= static_cast<double>(out.samples);
   for (std::size_t d = 0; d < descriptions; ++d) {
     Retrieval::Part& part = parts[d];
     if (part.samples == 0) continue;
-    out.mean_rank += part.mean_rank / static_cast<double>(out.samples);
-    part.mean_rank /= static_cast<double>(part.samples);
-    for (std::size_t i = 0; i < recall_ranks.size(); ++i) {
-      out.recall[i] += part.recall[i] / static_cast<double>(out.samples);
-      part.recall[i] /= static_cast<double>(part.samples);
-    }
     part.description = d;
+    part.mean_rank /= static_cast<double>(part.samples);
+    for (double& r : part.recall) r /= static_cast<double>(part.samples);
     out.parts.push_back(part);
   }
   return out;
