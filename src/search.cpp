@@ -50,15 +50,12 @@ Found find(const Dvgan& model, const SearchArgs& args, const SearchCollection& c
   const SearchIndex& index = collection.index;
   const motion::MotionFormat& format = model.format();
   Found found;
-  found.hop = args.hop > 0 ? args.hop : std::max<std::size_t>(1, format.frames / 2);
+  const SearchOptions options{args.top, args.hop, args.windows};
+  found.hop = search_hop(format, options);
   found.hypotheses = std::move(hypotheses);
-  const std::vector<SearchWindow> windows = index.windows(found.hop);
-  const SearchWindows search(model.context(), format, index.frames(), index.starts(windows),
-                             {.keep_bytes = 0});
-  const SearchRanking ranking =
-      rank(index, windows, search(found.hypotheses), found.hypotheses, args.top, args.windows);
+  const SearchRanking ranking = motiongan::search(model.context(), index, found.hypotheses, options);
   for (const SearchClip& clip : index.clips()) clip.left_out.empty() ? ++found.clips : ++found.left_out;
-  found.windows = windows.size();
+  found.windows = ranking.windows;
   found.median = ranking.median;
   const fs::path file = captions_for(args.collection, args.captions);
   const motion::Captions captions = file.empty() ? motion::Captions{} : motion::read_captions(file);

@@ -18,7 +18,7 @@ struct ModelEvaluationOptions {
   std::size_t samples = 16;        ///< motions of each description, made and real; at least 2
   std::uint64_t seed = 1;          ///< of the motions made, and of random pairs
   std::size_t diversity_pairs = 200, multimodality_pairs = 20;
-  FootSkateOptions feet;
+  FootSkateOptions feet{};
   double drift_seconds = 30;  ///< how long the motions last that drift is measured on; RNN generators only
   std::size_t drift_motions = 8;  ///< how many, one for each of the most popular descriptions in turn
 };

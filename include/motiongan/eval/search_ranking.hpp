@@ -28,7 +28,19 @@ struct SearchHit {
 struct SearchRanking {
   std::vector<SearchHit> hits;  ///< nearest first
   double median = 0;  ///< of all clips' (or windows') distances: how near a clip is that nobody asked for
+  std::size_t windows = 0;  ///< that were compared
 };
+
+struct SearchOptions {
+  std::size_t top = 10;       ///< results
+  std::size_t hop = 0;        ///< frames between two windows of a clip; 0: half a window
+  bool every_window = false;  ///< list windows, not clips: a clip may stand there more than once
+};
+
+/// Frames between two windows of a clip that `options` ask for.
+inline std::size_t search_hop(const motion::MotionFormat& format, const SearchOptions& options) {
+  return options.hop > 0 ? options.hop : std::max<std::size_t>(1, format.frames / 2);
+}
 
 /// The `top` nearest clips, each by its nearest window, or the nearest windows of all clips. Distances of the
 /// list are computed again in double by search_distance(), and order it; equal ones stand in the order of
@@ -89,6 +101,20 @@ inline SearchRanking rank(const SearchIndex& index, const std::vector<SearchWind
            std::tuple(b.distance(), b.window.clip, b.window.frame);
   });
   if (out.hits.size() > top) out.hits.resize(top);
+  return out;
+}
+
+/// The clips of an index nearest to the hypotheses, each [N, dof] as Dvgan::generate_poses() makes them.
+/// Distances are computed on the context's device.
+inline SearchRanking search(const Context& context, const SearchIndex& index,
+                            const std::vector<std::vector<float>>& hypotheses,
+                            const SearchOptions& options = {}) {
+  const std::vector<SearchWindow> windows = index.windows(search_hop(index.format(), options));
+  const SearchWindows compared(context, index.format(), index.frames(), index.starts(windows),
+                               {.keep_bytes = 0});
+  SearchRanking out =
+      rank(index, windows, compared(hypotheses), hypotheses, options.top, options.every_window);
+  out.windows = windows.size();
   return out;
 }
 
