@@ -99,7 +99,8 @@ bool train_variants(const Context& context, const motion::Dataset& data, const A
 std::optional<Ranker> get_ranker(const Context& context, const motion::Dataset& data, AblateDvganArgs& args) {
   if (!args.ranker.empty()) return Ranker::load(context, ranker_file(args.ranker));
   RankerArgs& ranking = args.ranking;
-  static_cast<CaptionedDataArgs&>(ranking) = args;
+  const CaptionedDataArgs& same_data = args;
+  static_cast<CaptionedDataArgs&>(ranking) = same_data;
   fill_in(ranking);
   const fs::path folder = fs::path(args.save) / "ranker";
   const TrainingBudget budget{.minutes = 0,
