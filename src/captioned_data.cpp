@@ -3,20 +3,38 @@
 #include "motiongan/motion/procedural.hpp"
 
 namespace motiongan::command {
+namespace {
+
+/// What says which clips, and what is said of them.
+void add_clip_options(CLI::App& verb, CaptionedDataArgs& a, const char* folder, const char* procedural) {
+  verb.add_option("FOLDER", a.folder, folder)->type_name("");
+  verb.add_option("--captions", a.captions,
+                  "file of lines `clip id <TAB> description` [FOLDER/captions.tsv, else from file names]")
+      ->type_name("FILE");
+  verb.add_option("--procedural", a.procedural, procedural)
+      ->expected(0, 1)
+      ->default_str("68")
+      ->type_name("CLIPS");
+}
+
+}  // namespace
+
+void add_test_clip_options(CLI::App& verb, CaptionedDataArgs& a) {
+  add_clip_options(verb, a, "other clips than those kept for testing by the run",
+                   "built-in motion: so many clips");
+  verb.add_option("--train-share", a.data.train_share, "share of the clips that is not looked at [the run's]")
+      ->capture_default_str();
+  verb.add_option("--split-seed", a.data.split_seed, "which clips those are [the run's]")
+      ->check(not_negative())
+      ->capture_default_str();
+}
 
 void add_captioned_data_options(CLI::App& verb, CaptionedDataArgs& a) {
   const auto option = [&](const char* name, auto& member, const char* text) {
     return verb.add_option(name, member, text)->capture_default_str();
   };
-  verb.add_option("FOLDER", a.folder, "folder of BVH clips (and folders in it), or one clip")->type_name("");
-  verb.add_option("--captions", a.captions,
-                  "file of lines `clip id <TAB> description` [FOLDER/captions.tsv, else from file names]")
-      ->type_name("FILE");
-  verb.add_option("--procedural", a.procedural,
-                  "instead of FOLDER: train on so many clips of built-in motion")
-      ->expected(0, 1)
-      ->default_str("68")
-      ->type_name("CLIPS");
+  add_clip_options(verb, a, "folder of BVH clips (and folders in it), or one clip",
+                   "instead of FOLDER: train on so many clips of built-in motion");
 
   option("--frames", a.data.frames, "frames of a motion; a power of two where a network is a CNN")
       ->check(positive())

@@ -33,6 +33,9 @@ inline bool describes_captioned_clips(const std::string& name) { return name == 
 /// Adds FOLDER and the options of the data to a verb.
 void add_captioned_data_options(CLI::App& verb, CaptionedDataArgs& args);
 
+/// Adds FOLDER and what names other test clips than those of a run.
+void add_test_clip_options(CLI::App& verb, CaptionedDataArgs& args);
+
 /// What --procedural is without a number.
 void fill_in_procedural(const CLI::App& verb, CaptionedDataArgs& args);
 

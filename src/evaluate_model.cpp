@@ -125,19 +125,10 @@ void add_evaluate_model(CLI::App& evaluate, Job& job) {
   verb->add_option("MODEL", a.model, "model file, or the --save folder of a training")
       ->required()
       ->type_name("");
-  verb->add_option("FOLDER", a.folder, "other clips than those kept for testing by the run")->type_name("");
+  add_test_clip_options(*verb, a);
   verb->add_option("--ranker", a.ranker, "folder of a run of `train ranker`, or a ranker's file")
       ->required()
       ->type_name("RANKER");
-  verb->add_option("--captions", a.captions,
-                   "file of lines `clip id <TAB> description` [FOLDER/captions.tsv, else from file names]")
-      ->type_name("FILE");
-  verb->add_option("--procedural", a.procedural, "built-in motion: so many clips")
-      ->expected(0, 1)
-      ->default_str("68")
-      ->type_name("CLIPS");
-  option("--train-share", a.data.train_share, "share of the clips that is not looked at [the run's]");
-  option("--split-seed", a.data.split_seed, "which clips those are [the run's]")->check(not_negative());
   option("--descriptions", a.evaluation.descriptions, "K: the most popular ones, at most")->check(positive());
   option("--samples", a.evaluation.samples, "motions of each description, made and real")
       ->check(CLI::Range(std::size_t{2}, std::size_t{1000000}))

@@ -148,16 +148,7 @@ void add_evaluate_ranker(CLI::App& evaluate, Job& job) {
   verb->add_option("RANKER", a.ranker, "folder of a run of `train ranker`, or a ranker's file")
       ->required()
       ->type_name("");
-  verb->add_option("FOLDER", a.folder, "other clips than those kept for testing by the run")->type_name("");
-  verb->add_option("--captions", a.captions,
-                   "file of lines `clip id <TAB> description` [FOLDER/captions.tsv, else from file names]")
-      ->type_name("FILE");
-  verb->add_option("--procedural", a.procedural, "built-in motion: so many clips")
-      ->expected(0, 1)
-      ->default_str("68")
-      ->type_name("CLIPS");
-  option("--train-share", a.data.train_share, "share of the clips that is not looked at [the run's]");
-  option("--split-seed", a.data.split_seed, "which clips those are [the run's]")->check(not_negative());
+  add_test_clip_options(*verb, a);
   option("--descriptions", a.evaluation.descriptions, "K: the most popular ones, at most")->check(positive());
   option("--windows", a.evaluation.windows_per_clip, "of each clip, evenly spread")->check(positive());
   option("--breakdown", a.breakdown, "descriptions to show one by one, the popular first")
