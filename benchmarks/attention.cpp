@@ -3,8 +3,8 @@
 // rollout is 30 seconds of motion, second by second, each the next one's prior.
 //   bench_attention [--json] [--peer torch_peer.py] [--seconds 4]
 // With --peer the same work is timed in PyTorch afterwards, in a process of its own, and the ratio is given.
-#include <motiongan/models/attention_critic.hpp>
-#include <motiongan/models/attention_rollout.hpp>
+#include <motiongan/networks/attention_critic.hpp>
+#include <motiongan/networks/attention_rollout.hpp>
 #include <motiongan/optim/adam.hpp>
 #include <motiongan/train/wgan_gp.hpp>
 
@@ -32,18 +32,18 @@ Measured critic_step(const Context& context, const AttentionGenerator& generator
   const Tensor prior = random_normal(context, {.seed = 5}, frames, batch, dof);
   const Tensor future = random_normal(context, {.seed = 6}, frames, batch, dof);
   const Var x = Var::constant(prior), y = Var::constant(classes_of(context, batch));
-  const Tensor real = concat_axis({x, Var::constant(future)}, 0).value();
+  const Tensor real = concatenate({x, Var::constant(future)}, 0).value();
   std::uint32_t step = 0;
   return measure(context, "attention_critic_step_b64", seconds, [&] {
     Tensor fake;
     {
       const NoGrad values_only;
-      fake = concat_axis({x, generator(x, y)}, 0).value();
+      fake = concatenate({x, generator(x, y)}, 0).value();
     }
     const auto judge = [&](const Var& motion) { return critic(motion); };
     const CriticLoss loss =
         critic_loss(judge, judge, real, fake,
-                    random_uniform(context, {.seed = 1, .stream = Stream::mix, .step = ++step}, batch), 10);
+                    random_uniform(context, {.seed = 1, .stream = RandomStream::interpolation, .step = ++step}, batch), 10);
     adam.step(grad(loss.loss, adam.parameters()));
   });
 }

@@ -1,7 +1,7 @@
 // A ranker's training step: 64 windows of 32 frames against 64 descriptions of 6 words, Adam included.
 #pragma once
-#include <motiongan/models/cnn_ranker.hpp>
-#include <motiongan/models/rnn_ranker.hpp>
+#include <motiongan/networks/cnn_ranker.hpp>
+#include <motiongan/networks/rnn_ranker.hpp>
 #include <motiongan/ops/cross_entropy.hpp>
 #include <motiongan/optim/adam.hpp>
 #include <numeric>

@@ -4,9 +4,9 @@
 //   bench_rnn [--json] [--peer torch_peer.py] [--seconds 4]
 // With --peer the same steps are timed in PyTorch afterwards, in a process of its own, and the ratio is
 // given.
-#include <motiongan/models/cnn_critic.hpp>
-#include <motiongan/models/rnn_critic.hpp>
-#include <motiongan/models/rnn_stream.hpp>
+#include <motiongan/networks/cnn_critic.hpp>
+#include <motiongan/networks/rnn_critic.hpp>
+#include <motiongan/networks/rnn_stream.hpp>
 #include <motiongan/optim/adam.hpp>
 #include <motiongan/train/wgan_gp.hpp>
 
@@ -25,7 +25,7 @@ std::vector<std::vector<int>> random_sentences(std::size_t count) {
   for (std::uint32_t b = 0; b < count; ++b)
     for (std::uint32_t i = 0; i < 6; ++i)
       sentences[b].push_back(
-          static_cast<int>(random_below({.seed = 9, .stream = Stream::captions}, b, vocabulary, i)));
+          static_cast<int>(random_below({.seed = 9, .stream = RandomStream::captions}, b, vocabulary, i)));
   return sentences;
 }
 
@@ -87,10 +87,10 @@ std::vector<Measured> ours(const Context& context, double seconds) {
       const NoGrad values_only;
       made = fake().value();
     }
-    const Var h_txt = rnn.encode_text(text), pairs = concat_axis({h_txt, h_txt}, 0);
+    const Var h_txt = rnn.encode_text(text), pairs = concatenate({h_txt, h_txt}, 0);
     const CriticLoss loss = critic_loss(
         [&](const Var& x) { return rnn(x, pairs); }, [&](const Var& x) { return rnn(x, h_txt); }, real, made,
-        random_uniform(context, {.seed = 1, .stream = Stream::mix, .step = step}, batch), 10);
+        random_uniform(context, {.seed = 1, .stream = RandomStream::interpolation, .step = step}, batch), 10);
     critic_adam.step(grad(loss.loss, critic_adam.parameters()));
   };
   std::vector<Measured> all{sample(context, generator, 64, seconds), sample(context, generator, 1, seconds),

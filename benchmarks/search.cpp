@@ -8,7 +8,7 @@
 // ones. And a ranker's training step, beside PyTorch with --peer benchmarks/ranker_peer.py.
 #include <cstdlib>
 #include <filesystem>
-#include <motiongan/eval/search_windows.hpp>
+#include <motiongan/search/windows.hpp>
 #include <random>
 #include <thread>
 

@@ -4,8 +4,8 @@
 //   bench_train [--json] [--peer torch_peer.py] [--seconds 4]
 // With --peer the same steps are timed in PyTorch afterwards, in a process of its own, and the ratio is
 // given.
-#include <motiongan/models/cnn_critic.hpp>
-#include <motiongan/models/cnn_generator.hpp>
+#include <motiongan/networks/cnn_critic.hpp>
+#include <motiongan/networks/cnn_generator.hpp>
 #include <motiongan/optim/adam.hpp>
 #include <motiongan/train/wgan_gp.hpp>
 
@@ -28,7 +28,7 @@ std::vector<Measured> ours(const Context& context, double seconds) {
   for (std::uint32_t b = 0; b < batch; ++b)
     for (std::uint32_t i = 0; i < 6; ++i)
       sentences[b].push_back(
-          static_cast<int>(random_below({.seed = 9, .stream = Stream::captions}, b, vocabulary, i)));
+          static_cast<int>(random_below({.seed = 9, .stream = RandomStream::captions}, b, vocabulary, i)));
   const Sentences text(context, sentences, vocabulary);
   const Tensor real = random_normal(context, {.seed = 5}, frames, batch, dof);
   std::uint32_t step = 0;
@@ -43,10 +43,10 @@ std::vector<Measured> ours(const Context& context, double seconds) {
   };
   const auto critic_step = [&] {
     const Tensor made = sample();
-    const Var h_txt = critic.encode_text(text), pairs = concat_axis({h_txt, h_txt}, 0);
+    const Var h_txt = critic.encode_text(text), pairs = concatenate({h_txt, h_txt}, 0);
     const CriticLoss loss = critic_loss(
         [&](const Var& x) { return critic(x, pairs); }, [&](const Var& x) { return critic(x, h_txt); }, real,
-        made, random_uniform(context, {.seed = 1, .stream = Stream::mix, .step = step}, batch), 10);
+        made, random_uniform(context, {.seed = 1, .stream = RandomStream::interpolation, .step = step}, batch), 10);
     critic_adam.step(grad(loss.loss, critic_adam.parameters()));
   };
   const auto generator_step = [&] {

@@ -25,7 +25,6 @@ UNARY(sigmoid_of, 1 / (1 + exp(-v)))
 UNARY(exp_of, exp(v))
 UNARY(log_of, log(v))
 UNARY(sqrt_of, sqrt(v))
-UNARY(reciprocal, 1 / v)
 UNARY(clamp_of, clamp(v, (realv)a, (realv)b))
 
 BINARY(axpby, a* v + b * w)
@@ -43,7 +42,7 @@ kernel void fill(global real* out, uint out0, uint n, real a) {
 
 /// out[o, j, i] = relu(big[o, j, i] + small[o, i]): a row added to a block of `count` rows, then ReLU, in one
 /// pass.
-kernel void add_expand_relu(global const real* big, uint big0, global const real* small, uint small0,
+kernel void add_broadcast_relu(global const real* big, uint big0, global const real* small, uint small0,
                             global real* out, uint out0, uint outer, uint count, uint inner) {
   const uint columns = (inner + VW - 1) / VW, item = get_global_id(0);
   const uint row = item / columns, i = item % columns * VW;

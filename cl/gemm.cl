@@ -5,6 +5,7 @@
 // is copied (or transposed) into private memory, then tiles of up to 12 x COLUMNS of C are held in registers
 // while p runs. Every element is fma(a, b, sum) over p ascending, segment after segment, starting from what C
 // holds or 0: neither the row, nor the size of its tile, nor the blocking of p changes a bit of the result.
+#include "gemm_tiles.cl"
 
 // sums[2 * DIRECT] += a row of A times DIRECT panels of B stored [p][j], read where they are: for few rows,
 // packing costs as much as the product.
@@ -142,7 +143,7 @@ kernel void gemm_finish(global real* c, uint c_first, global const real* bias, u
 }
 
 // out[j][i] = x[i][j]. Items: squares of VW rows and VW columns of x, a row of squares after another.
-kernel void gemm_turn(global const real* x, uint x_first, uint x_row, uint rows, uint columns,
+kernel void transpose(global const real* x, uint x_first, uint x_row, uint rows, uint columns,
                       global real* out, uint out_first, uint out_row) {
   const uint across = (columns + VW - 1) / VW, item = get_global_id(0);
   const uint i = item / across * VW, j = item % across * VW;

@@ -1,5 +1,6 @@
 // Products whose B comes again and again, such as a recurrent network's weights: B is brought once into the
 // order in which it is read. The same bits as gemm.cl's.
+#include "gemm_tiles.cl"
 
 // B in panels of COLUMNS columns, out[panel][p][COLUMNS], for products that come again and again: what
 // gemm.cl does for every product is done once. Columns past n are anything. Items: panels, pieces of

@@ -1,4 +1,4 @@
-// What the kernels of gemm.cl and gemm_packed.cl have in common, put in front of both: vectors that lie
+// What the kernels of gemm.cl and gemm_packed.cl have in common: vectors that lie
 // anywhere, panels of B, tiles of C in registers, and what a product needs to know.
 
 #define COLUMNS (2 * VW)

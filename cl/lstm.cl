@@ -84,7 +84,7 @@ kernel void lstm_cell_backward(global const real* gates, uint gates0, global con
 /// of c_total and the direct adjoint of c (absent in the first step). Out: adjoints of h_total and c_total,
 /// which are also those of dh and dc; the direct adjoints of the activations (`direct_gates`, may be u) and
 /// of c.
-kernel void lstm_slope_forward(global const real* u, uint u0, global const real* gates, uint gates0,
+kernel void lstm_grad_forward(global const real* u, uint u0, global const real* gates, uint gates0,
                                global const real* c, uint c0, global const real* c_before, uint c_before0,
                                global const real* h_total, uint h_total0, global const real* c_total,
                                uint c_total0, global const real* c_adjoint_before, uint c_adjoint_before0,
@@ -105,31 +105,31 @@ kernel void lstm_slope_forward(global const real* u, uint u0, global const real*
               o = load_some(gates + 3 * k, left);
   const realv s = tanh(load_some(c + c0 + at, left)), before = load_some(c_before + c_before0 + at, left);
   const realv gh = load_some(h_total + h_total0 + at, left), gc = load_some(c_total + c_total0 + at, left);
-  const realv i_slope = i * (1 - i), f_slope = f * (1 - f), g_slope = 1 - g * g, o_slope = o * (1 - o),
-              s_slope = 1 - s * s;
-  realv of_c = ui * g * i_slope + uf * before * f_slope + ug * i * g_slope,
+  const realv i_grad = i * (1 - i), f_grad = f * (1 - f), g_grad = 1 - g * g, o_grad = o * (1 - o),
+              s_grad = 1 - s * s;
+  realv of_c = ui * g * i_grad + uf * before * f_grad + ug * i * g_grad,
         of_f = uf * gc * before * (1 - 2 * f);
   if (c_adjoint_before) {
     const realv carried = load_some(c_adjoint_before + c_adjoint_before0 + at, left);
     of_c += carried * f;
     of_f += carried * gc;
     global real* earlier = direct_before + direct_before0 + at;
-    store_some(load_some(earlier, left) + uf * gc * f_slope, earlier, left);
+    store_some(load_some(earlier, left) + uf * gc * f_grad, earlier, left);
   }
-  const realv of_s = uo * gh * o_slope - 2 * of_c * gh * o * s;
-  store_some(uo * s * o_slope + of_c * o * s_slope, h_adjoint + h_adjoint0 + at, left);
+  const realv of_s = uo * gh * o_grad - 2 * of_c * gh * o * s;
+  store_some(uo * s * o_grad + of_c * o * s_grad, h_adjoint + h_adjoint0 + at, left);
   store_some(of_c, c_adjoint + c_adjoint0 + at, left);
-  store_some(gc * (ui * g * (1 - 2 * i) + ug * g_slope), direct_gates, left);
+  store_some(gc * (ui * g * (1 - 2 * i) + ug * g_grad), direct_gates, left);
   store_some(of_f, direct_gates + k, left);
-  store_some(gc * (ui * i_slope - 2 * ug * g * i), direct_gates + 2 * k, left);
-  store_some(gh * (uo * s * (1 - 2 * o) + of_c * s_slope), direct_gates + 3 * k, left);
-  store_some(of_s * s_slope, direct + direct0 + at, left);
+  store_some(gc * (ui * i_grad - 2 * ug * g * i), direct_gates + 2 * k, left);
+  store_some(gh * (uo * s * (1 - 2 * o) + of_c * s_grad), direct_gates + 3 * k, left);
+  store_some(of_s * s_grad, direct + direct0 + at, left);
 }
 
-/// Second sweep. In: direct adjoints of the activations and of c (lstm_slope_forward's); adjoints of h and c
+/// Second sweep. In: direct adjoints of the activations and of c (lstm_grad_forward's); adjoints of h and c
 /// from the step after (h_carry absent in the last step). Out: adjoint of the gates before activation, in
 /// place of the direct ones; c_carry for the step before.
-kernel void lstm_slope_backward(global const real* gates, uint gates0, global const real* c, uint c0,
+kernel void lstm_grad_backward(global const real* gates, uint gates0, global const real* c, uint c0,
                                 global const real* c_before, uint c_before0, global const real* direct,
                                 uint direct0, global const real* h_carry, uint h_carry0, global real* c_carry,
                                 uint c_carry0, global real* adjoint, uint adjoint0, uint batch, uint k) {

@@ -1,7 +1,7 @@
-// Sums in a fixed order, and their adjoint, the expansion.
+// Sums in a fixed order, and their adjoint, broadcasting.
 
 /// out[o, s, i] = scale * sum of x[o, j, i] over j in [s*chunk, (s+1)*chunk), in ascending order.
-kernel void sum_middle(global const real* x, uint x0, global real* out, uint out0, uint outer, uint count,
+kernel void sum_axis(global const real* x, uint x0, global real* out, uint out0, uint outer, uint count,
                        uint inner, uint chunk, real scale) {
   const uint columns = (inner + VW - 1) / VW, pieces = (count + chunk - 1) / chunk, item = get_global_id(0);
   const uint row = item / columns, i = item % columns * VW;
@@ -29,7 +29,7 @@ kernel void sum_rows(global const real* x, uint x0, global real* out, uint out0,
 }
 
 /// out[o, j, i] = scale * x[o, i] for j < count.
-kernel void expand(global const real* x, uint x0, global real* out, uint out0, uint outer, uint count,
+kernel void broadcast_axis(global const real* x, uint x0, global real* out, uint out0, uint outer, uint count,
                    uint inner, real scale) {
   const uint columns = (inner + VW - 1) / VW, item = get_global_id(0);
   const uint row = item / columns, i = item % columns * VW;
@@ -39,7 +39,7 @@ kernel void expand(global const real* x, uint x0, global real* out, uint out0, u
 }
 
 /// out[r, j] = scale * x[r]: the expansion whose inner size is 1.
-kernel void expand_rows(global const real* x, uint x0, global real* out, uint out0, uint rows, uint count,
+kernel void broadcast_rows(global const real* x, uint x0, global real* out, uint out0, uint rows, uint count,
                         real scale) {
   const uint columns = (count + VW - 1) / VW, item = get_global_id(0);
   const uint r = item / columns, j = item % columns * VW;

@@ -13,7 +13,7 @@ struct FrameCritic {
       : hidden(init, channels, width), score(init, width, 1) {}
 
   Var operator()(const Var& motion) const {
-    const Var frames = score(mean_frames(relu(hidden(motion))));  // [1, B, 1]
+    const Var frames = score(mean(relu(hidden(motion)), 0));  // [1, B, 1]
     return reshape(frames, {motion.dim(1)});
   }
   void list_parameters(ParameterList& list) {

@@ -9,7 +9,7 @@ int main() {
   auto data = motion::Dataset::from_motions(
       motion::procedural_motions({.clips = 34}),
       {.frames = 16, .rate = 8.0, .root_rotation = motion::RootRotation::velocity});
-  Dvgan model(ctx, data.format, {.generator = Generator::rnn, .hidden = 16});
+  Dvgan model(ctx, data.format, {.generator = GeneratorKind::rnn, .hidden = 16});
   train(model, data, {.iterations = 5, .critic_steps = 2, .batch = 8});
 
   // Two seconds of somebody walking, at any rate and anywhere in the room.

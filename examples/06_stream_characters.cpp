@@ -10,7 +10,7 @@ int main() {
   auto data = motion::Dataset::from_motions(
       motion::procedural_motions({.clips = 34}),
       {.frames = 16, .rate = 8.0, .root_rotation = motion::RootRotation::velocity});
-  Dvgan model(ctx, data.format, {.generator = Generator::rnn, .hidden = 16});
+  Dvgan model(ctx, data.format, {.generator = GeneratorKind::rnn, .hidden = 16});
   train(model, data, {.iterations = 5, .critic_steps = 2, .batch = 8});
 
   // In ten rows of ten. Each has noise of its own: sample 7 does the same whoever is beside it.

@@ -12,7 +12,7 @@ int main() {
       {.frames = 10, .rate = 10, .pattern = "{label}_*", .classes = {"walk", "run", "jump"}});
   std::printf("%zu clips to train on, %zu for testing\n", data.train.size(), data.test.size());
 
-  AttentionGan model(ctx, data.format, {.hidden = 16});
+  ActionGan model(ctx, data.format, {.hidden = 16});
   train(model, data, AttentionTrainOptions{.iterations = 5, .critic_steps = 2, .batch = 8},
         {.log_every = 5, .report = [](std::size_t iteration, const AttentionLosses& l) {
            std::printf("iteration %zu: wasserstein %.3f, skeleton %.3f, blend %.3f, accuracy %.2f\n",

@@ -9,7 +9,7 @@ int main() {
   const auto data = motion::ActionDataset::from_motions(
       motion::procedural_motions({.clips = 68, .seconds = 4, .rate = 20}),
       {.frames = 10, .rate = 10, .pattern = "{label}_*", .classes = {"walk", "run", "jump"}});
-  AttentionGan model(ctx, data.format, {.hidden = 16, .noise_dim = 4});
+  ActionGan model(ctx, data.format, {.hidden = 16, .noise_dim = 4});
   train(model, data, AttentionTrainOptions{.iterations = 5, .critic_steps = 2, .batch = 8});
 
   // Each goes on from a second of a clip; with noise, sample 7 does the same whoever is beside it.

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "motiongan/motion/procedural.hpp"
-#include "run_start.hpp"
+#include "motiongan/procedural/procedural.hpp"
+#include "train/run_start.hpp"
 
 namespace motiongan::command {
 

@@ -1,7 +1,7 @@
 // Clips with classes, as several verbs are told of them.
 #pragma once
 #include "command.hpp"
-#include "motiongan/motion/action_dataset.hpp"
+#include "motiongan/data/action_dataset.hpp"
 #include "motiongan/train/run.hpp"
 
 namespace motiongan::command {

@@ -1,9 +1,9 @@
 // Clips of positions as files: BVH, CSV or NPY.
 #pragma once
 #include "command.hpp"
-#include "motiongan/motion/action_source.hpp"
-#include "motiongan/motion/bvh.hpp"
-#include "motiongan/motion/position_files.hpp"
+#include "motiongan/data/action_source.hpp"
+#include "motiongan/formats/bvh.hpp"
+#include "motiongan/formats/position_files.hpp"
 #include "motiongan/motion/position_rotations.hpp"
 
 namespace motiongan::command {

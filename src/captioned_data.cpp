@@ -1,6 +1,6 @@
 #include "captioned_data.hpp"
 
-#include "motiongan/motion/procedural.hpp"
+#include "motiongan/procedural/procedural.hpp"
 
 namespace motiongan::command {
 namespace {

@@ -1,7 +1,7 @@
 // Captioned clips, as the verbs that train on them or measure by them are given them.
 #pragma once
 #include "command.hpp"
-#include "motiongan/motion/dataset.hpp"
+#include "motiongan/data/dataset.hpp"
 
 namespace motiongan::command {
 

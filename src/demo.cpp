@@ -2,14 +2,14 @@
 #include <algorithm>
 #include <fstream>
 
-#include "motiongan/motion/bvh.hpp"
+#include "motiongan/formats/bvh.hpp"
 #include "motiongan/motion/motion.hpp"
-#include "motiongan/motion/procedural.hpp"
-#include "motiongan/motion/statistics.hpp"
+#include "motiongan/procedural/procedural.hpp"
+#include "motiongan/metrics/statistics.hpp"
 #include "motiongan/train/progress.hpp"
-#include "plot_log.hpp"
+#include "inspect/plot_log.hpp"
 #include "show.hpp"
-#include "training.hpp"
+#include "train/training.hpp"
 
 namespace motiongan::command {
 namespace {

@@ -3,8 +3,8 @@
 #include <set>
 
 #include "command.hpp"
-#include "motiongan/motion/text_file.hpp"
-#include "motiongan/motion/vocabulary.hpp"
+#include "motiongan/formats/text_file.hpp"
+#include "motiongan/data/vocabulary.hpp"
 #include "motiongan/train/run.hpp"
 
 namespace motiongan::command {

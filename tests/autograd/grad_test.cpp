@@ -3,7 +3,7 @@
 
 #include <motiongan/core/random.hpp>
 #include <motiongan/ops/lstm.hpp>
-#include <motiongan/ops/taps.hpp>
+#include <motiongan/ops/conv1d.hpp>
 #include <numeric>
 
 #include "../support/check_grads.hpp"
@@ -150,11 +150,11 @@ TEST_CASE("without create_graph the result carries no graph, with it it can be d
   CHECK_FALSE(plain.requires_grad());
   CHECK(plain.node()->inputs.empty());
   CHECK_THROWS_AS(grad(leaf({1}) * leaf({1}), {plain}), Error);
-  const Var slope = grad(x * x * x, {x}, {.create_graph = true})[0];
-  CHECK(slope.requires_grad());
-  check_near(host(grad(slope, {x})[0]), {3, -6});
+  const Var gradient = grad(x * x * x, {x}, {.create_graph = true})[0];
+  CHECK(gradient.requires_grad());
+  check_near(host(grad(gradient, {x})[0]), {3, -6});
   const NoGrad scope;  // recording is off for the sweep too
-  CHECK_FALSE(grad(slope, {x}, {.create_graph = true})[0].requires_grad());
+  CHECK_FALSE(grad(gradient, {x}, {.create_graph = true})[0].requires_grad());
 }
 
 TEST_CASE("third derivative of x^2 exp(a x)") {
@@ -187,15 +187,15 @@ TEST_CASE("an empty Var says so") { CHECK_THROWS_WITH_AS(Var().value(), "an empt
 TEST_CASE("gradients of two runs are equal bit for bit") {
   const auto run = [] {
     const Context context;
-    const auto random = [&](Stream stream, std::size_t a, std::size_t b, std::size_t c) {
+    const auto random = [&](RandomStream stream, std::size_t a, std::size_t b, std::size_t c) {
       return Var::leaf(random_normal(context, {.seed = 5, .stream = stream}, a, b, c));
     };
-    const Var x = random(Stream::noise, 17, 5, 33), w = random(Stream::noise + 1, 3, 20, 33),
-              bias = reshape(random(Stream::noise + 2, 1, 1, 20), {20});
-    const Var y = taps(x, w, {-1, 0, 1}, 17, false, {.bias = bias, .relu = true});
-    const Var slope = grad(mean(square(y)), {x}, {.create_graph = true})[0];
+    const Var x = random(RandomStream::noise, 17, 5, 33), w = random(RandomStream::noise + 1, 3, 20, 33),
+              bias = reshape(random(RandomStream::noise + 2, 1, 1, 20), {20});
+    const Var y = conv1d(x, w, {-1, 0, 1}, 17, false, {.bias = bias, .relu = true});
+    const Var gradient = grad(mean(square(y)), {x}, {.create_graph = true})[0];
     std::vector<std::vector<float>> all;
-    for (const Var& g : grad(sum(sqrt(square(slope) + 1e-12)), {x, w, bias}))
+    for (const Var& g : grad(sum(sqrt(square(gradient) + 1e-12)), {x, w, bias}))
       all.push_back(g.value().to_host());
     return all;
   };

@@ -24,21 +24,21 @@ Var doubled(const Var& x) {
 
 TEST_CASE("a chain of 200,000 operations is traversed and destroyed without the stack") {
   const Context context;
-  const Var x = Var::leaf(filled(context, {4}, 2));
+  const Var x = Var::leaf(full(context, {4}, 2));
   Var y = x;
   for (std::size_t i = 0; i < long_chain; ++i) y = reshape(y, i % 2 ? Shape{4} : Shape{2, 2});
   CHECK(grad(y, {x})[0].value().to_host() == std::vector<float>(4, 1));
   // The recorded backward pass is a chain as long again.
-  Var slope = grad({y}, {Var::leaf(filled(context, {4}, 3))}, {x}, {.create_graph = true})[0];
-  CHECK(slope.value().to_host() == std::vector<float>(4, 3));
+  Var gradient = grad({y}, {Var::leaf(full(context, {4}, 3))}, {x}, {.create_graph = true})[0];
+  CHECK(gradient.value().to_host() == std::vector<float>(4, 3));
   y = Var();
-  slope = Var();
+  gradient = Var();
   CHECK(context.statistics().bytes_in_use == 256);  // x alone
 }
 
 TEST_CASE("a long chain of operations that use one value twice") {
   const Context context;
-  const Var x = Var::leaf(filled(context, {1}, 2));
+  const Var x = Var::leaf(full(context, {1}, 2));
   Var y = x;
   for (std::size_t i = 0; i < long_chain; ++i) y = doubled(y);
   CHECK(grad(y, {x})[0].item() == 1);
@@ -48,7 +48,7 @@ TEST_CASE("a long chain of operations that use one value twice") {
 
 TEST_CASE("a node that somebody still holds outlives the graph around it") {
   const Context context;
-  const Var x = Var::leaf(filled(context, {2}, 3));
+  const Var x = Var::leaf(full(context, {2}, 3));
   Var middle;
   {
     Var y = x;
@@ -85,7 +85,7 @@ TEST_CASE("memory returns to the pool after a sweep, of any order") {
 
 TEST_CASE("a sweep that fails leaves nothing behind") {
   const Context context;
-  const Var x = Var::leaf(filled(context, {2}, 1));
+  const Var x = Var::leaf(full(context, {2}, 1));
   const std::size_t before = context.statistics().bytes_in_use;
   {
     const Var y =

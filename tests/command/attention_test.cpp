@@ -2,9 +2,9 @@
 #include <doctest/doctest.h>
 
 #include "command.hpp"
-#include "motiongan/motion/bvh.hpp"
+#include "motiongan/formats/bvh.hpp"
 #include "motiongan/motion/motion.hpp"
-#include "motiongan/motion/position_files.hpp"
+#include "motiongan/formats/position_files.hpp"
 #include "motiongan/train/csv_log.hpp"
 
 using motiongan::motion::read_bvh;

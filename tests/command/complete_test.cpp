@@ -2,7 +2,7 @@
 #include <doctest/doctest.h>
 
 #include "command.hpp"
-#include "motiongan/motion/bvh.hpp"
+#include "motiongan/formats/bvh.hpp"
 #include "motiongan/motion/motion.hpp"
 
 using namespace motiongan::motion;

@@ -7,7 +7,7 @@
 
 #include "command.hpp"
 #include "motiongan/models/dvgan.hpp"
-#include "motiongan/motion/bvh.hpp"
+#include "motiongan/formats/bvh.hpp"
 
 using namespace motiongan::motion;
 

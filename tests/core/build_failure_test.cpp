@@ -3,11 +3,13 @@
 
 namespace motiongan::kernels {
 inline constexpr char broken[] = "\nkernel void softmax_rows(global real* x) {\n  x[0] = no_such_name;\n}\n";
+inline constexpr File broken_files[] = {
+    {"prelude", prelude}, {"elementwise", elementwise}, {"softmax", broken}};
 }
 
-#define softmax broken  // so that cl/softmax.cl is the text above, in this program only
+#define files broken_files  // so that cl/softmax.cl is the text above, in this program only
 #include <motiongan/core/program.hpp>
-#undef softmax
+#undef files
 
 #include <doctest/doctest.h>
 
@@ -20,15 +22,15 @@ TEST_CASE("a program that does not build says why and where") {
   const Tensor x(context, {4});
   std::string text = "no error";
   try {
-    context.launch("softmax", "softmax_rows", Grid::items(4), x);
+    context.launch("softmax", "softmax_rows", LaunchGrid::items(4), x);
   } catch (const Error& error) {
     text = error.what();
   }
   CAPTURE(text);
   for (const char* part : {"clBuildProgram failed with CL_BUILD_PROGRAM_FAILURE", "for cl/softmax.cl on ",
-                           context.device().name.c_str(), "-DREAL=float", "no_such_name"})
+                           context.device().name.c_str(), "-DREAL=float", "softmax.cl:3", "no_such_name"})
     CHECK(text.find(part) != std::string::npos);
   // Other files still build.
-  CHECK_NOTHROW(context.launch("elementwise", "fill", Grid::items(4), x, x.size(), Real{2}));
+  CHECK_NOTHROW(context.launch("elementwise", "fill", LaunchGrid::items(4), x, x.size(), KernelReal{2}));
   CHECK(x.to_host() == std::vector<float>(4, 2));
 }

@@ -68,7 +68,7 @@ TEST_CASE("a view keeps the buffer after its tensor is gone") {
     const Tensor whole = Tensor::from(context, {6}, std::vector<float>{1, 2, 3, 4, 5, 6});
     piece = whole.view(2, {3});
   }
-  const Tensor other = filled(context, {6}, 9);
+  const Tensor other = full(context, {6}, 9);
   CHECK(piece.to_host() == std::vector<float>{3, 4, 5});
 }
 
@@ -130,23 +130,23 @@ TEST_CASE("a context describes itself") {
 
 TEST_CASE("errors of launches name kernel, file, sizes and shapes") {
   const Context context;
-  const Tensor x = filled(context, {3, 5}, 1), out(context, {3, 5});
-  CHECK(says(message_of([&] { context.launch("nowhere", "fill", Grid::items(1), x); }),
+  const Tensor x = full(context, {3, 5}, 1), out(context, {3, 5});
+  CHECK(says(message_of([&] { context.launch("nowhere", "fill", LaunchGrid::items(1), x); }),
              "there is no kernel file cl/nowhere.cl"));
 
   const std::string unknown =
-      message_of([&] { context.launch("elementwise", "no_such_kernel", Grid::items(1), x); });
+      message_of([&] { context.launch("elementwise", "no_such_kernel", LaunchGrid::items(1), x); });
   CHECK(says(unknown, "kernel no_such_kernel of cl/elementwise.cl"));
   CHECK(says(unknown, "CL_INVALID_KERNEL_NAME"));
 
   const std::string extra = message_of(
-      [&] { context.launch("elementwise", "fill", Grid::items(15), x, std::size_t{15}, Real{1}, Real{2}); });
+      [&] { context.launch("elementwise", "fill", LaunchGrid::items(15), x, std::size_t{15}, KernelReal{1}, KernelReal{2}); });
   CHECK(says(extra, "argument 4 of kernel fill"));
 
   const std::size_t large = std::size_t{1} << 20;  // items in one group: no device takes that
   const std::string grid = message_of([&] {
-    context.launch("elementwise", "affine", Grid{1, {large, 1, 1}, {large, 1, 1}}, x, out, x.size(),
-                   Real{2.5}, Real{0});
+    context.launch("elementwise", "affine", LaunchGrid{1, {large, 1, 1}, {large, 1, 1}}, x, out, x.size(),
+                   KernelReal{2.5}, KernelReal{0});
   });
   CHECK(says(grid, "clEnqueueNDRangeKernel failed with CL_INVALID_WORK"));
   CHECK(says(grid, "kernel affine of cl/elementwise.cl"));
@@ -154,7 +154,7 @@ TEST_CASE("errors of launches name kernel, file, sizes and shapes") {
   CHECK(says(grid, "arguments [3, 5] [3, 5] 15 2.5 0"));
 
   CHECK(says(message_of([&] {
-               context.launch("elementwise", "fill", Grid::items(1), x, std::size_t{1} << 33, Real{0});
+               context.launch("elementwise", "fill", LaunchGrid::items(1), x, std::size_t{1} << 33, KernelReal{0});
              }),
              "kernel fill: 8589934592 does not fit 32 bits"));
 
@@ -165,7 +165,7 @@ TEST_CASE("errors of launches name kernel, file, sizes and shapes") {
 TEST_CASE("an empty grid launches nothing") {
   const Context context;
   const std::size_t before = context.statistics().launches;
-  context.launch("elementwise", "fill", Grid::items(0), Tensor(context, {1}), std::size_t{0}, Real{0});
+  context.launch("elementwise", "fill", LaunchGrid::items(0), Tensor(context, {1}), std::size_t{0}, KernelReal{0});
   CHECK(context.statistics().launches == before);
 }
 

@@ -44,7 +44,7 @@ TEST_CASE("known answers of Philox 4x32-10 (Salmon et al., their test vectors)")
 }
 
 TEST_CASE("uniform and whole numbers of the device are those of the host") {
-  const RandomKey key{.seed = 0x0123456789abcdefu, .stream = Stream::mix, .step = 70'001, .first_sample = 5};
+  const RandomKey key{.seed = 0x0123456789abcdefu, .stream = RandomStream::interpolation, .step = 70'001, .first_sample = 5};
   const std::size_t n = 1000;
   const std::vector<float> uniform = random_uniform(floats(), key, n).to_host();
   const std::vector<cl_int> whole = random_integers(floats(), key, n, -16, 33).to_host();
@@ -61,14 +61,14 @@ TEST_CASE("uniform and whole numbers of the device are those of the host") {
 TEST_CASE("whole numbers are spread evenly") {
   std::vector<int> counts(10);
   const std::size_t n = 100'000;
-  for (cl_int v : random_integers(floats(), {.seed = 3, .stream = Stream::cut}, n, 0, 10).to_host())
+  for (cl_int v : random_integers(floats(), {.seed = 3, .stream = RandomStream::cut}, n, 0, 10).to_host())
     ++counts.at(static_cast<std::size_t>(v));
   for (int count : counts) CHECK(std::abs(count - 10'000) < 475);  // 5 deviations
 }
 
 TEST_CASE("normal numbers are those of the definition, in float and in double") {
   const RandomKey key{
-      .seed = 99, .stream = Stream::noise + 3, .step = 12, .first_sample = 40, .first_frame = 7};
+      .seed = 99, .stream = RandomStream::noise + 3, .step = 12, .first_sample = 40, .first_frame = 7};
   const Context doubles({.precision = Precision::f64});
   for (std::size_t channels : {1, 5, 15, 16, 17, 63, 64, 65, 93, 130}) {
     const std::size_t frames = 3, batch = 2;
@@ -107,7 +107,7 @@ TEST_CASE("moments of the normal numbers") {
 }
 
 TEST_CASE("a sample is the same alone and in a batch, a frame the same in a longer array") {
-  const RandomKey key{.seed = 7, .stream = Stream::noise + 1, .step = 3};
+  const RandomKey key{.seed = 7, .stream = RandomStream::noise + 1, .step = 3};
   for (std::size_t channels : {1, 8, 16, 17, 64, 93, 256}) {
     const std::size_t frames = 4, batch = 9;
     const std::vector<float> all = normals(key, frames, batch, channels);
@@ -145,13 +145,13 @@ TEST_CASE("a sample is the same alone and in a batch, a frame the same in a long
 }
 
 TEST_CASE("another seed, stream, step, sample or frame gives other numbers, the same key the same") {
-  const RandomKey key{.seed = 1, .stream = Stream::noise, .step = 1};
+  const RandomKey key{.seed = 1, .stream = RandomStream::noise, .step = 1};
   const std::vector<float> reference = normals(key, 2, 2, 20);
   CHECK(normals(key, 2, 2, 20) == reference);
   std::vector<RandomKey> others(7, key);
   others[0].seed = 2;
   others[1].seed = key.seed + (std::uint64_t{1} << 32);
-  others[2].stream = Stream::noise + 1;
+  others[2].stream = RandomStream::noise + 1;
   others[3].step = 2;
   others[4].first_sample = 2;
   others[5].first_frame = 2;
@@ -180,7 +180,7 @@ TEST_CASE("samples with keys of their own have the numbers of random_normal") {
           static_cast<std::uint32_t>(frames[b])})
       keys.push_back(static_cast<cl_int>(word));
   const Tensor all(context, {2, 3, 70});
-  fill_normal_each(all, Stream::noise, 10, Indices(context, keys));
+  fill_normal_each(all, RandomStream::noise, 10, Indices(context, keys));
   const std::vector<float> values = all.to_host();
   for (std::size_t b = 0; b < 3; ++b) {
     const RandomKey key{.seed = seeds[b], .first_sample = samples[b], .first_frame = 10 + frames[b]};
@@ -188,5 +188,5 @@ TEST_CASE("samples with keys of their own have the numbers of random_normal") {
     for (std::size_t t = 0; t < 2; ++t)
       for (std::size_t c = 0; c < 70; ++c) CHECK(values[(t * 3 + b) * 70 + c] == alone[t * 70 + c]);
   }
-  CHECK_THROWS_AS(fill_normal_each(all, Stream::noise, 0, Indices(context, 11)), Error);
+  CHECK_THROWS_AS(fill_normal_each(all, RandomStream::noise, 0, Indices(context, 11)), Error);
 }

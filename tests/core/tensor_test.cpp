@@ -109,7 +109,7 @@ TEST_CASE("uploads to one tensor are seen by the kernels in between") {
 TEST_CASE("copies of every length and offset") {
   const Context context;
   for (std::size_t n : {1, 3, 4, 15, 16, 17, 33, 100}) {
-    const Tensor from = Tensor::from(context, {n + 3}, counting(n + 3)), to = filled(context, {n + 5}, -1);
+    const Tensor from = Tensor::from(context, {n + 3}, counting(n + 3)), to = full(context, {n + 5}, -1);
     detail::copy_tensor(from.view(3, {n}), to.view(2, {n}));
     std::vector<double> expected(n + 5, -1);
     std::iota(expected.begin() + 2, expected.end() - 3, 3.0);

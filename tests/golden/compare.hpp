@@ -1,9 +1,9 @@
 // Runs a model on a golden file and says how far ours are from theirs.
 #pragma once
-#include <motiongan/models/cnn_critic.hpp>
-#include <motiongan/models/cnn_generator.hpp>
-#include <motiongan/models/rnn_critic.hpp>
-#include <motiongan/models/rnn_generator.hpp>
+#include <motiongan/networks/cnn_critic.hpp>
+#include <motiongan/networks/cnn_generator.hpp>
+#include <motiongan/networks/rnn_critic.hpp>
+#include <motiongan/networks/rnn_generator.hpp>
 
 #include "compare_attention.hpp"
 #include "compare_prediction.hpp"
@@ -52,7 +52,7 @@ template <class Critic>
 void critic(Critic model, const File& file, const Context& context, Pairs& outputs, Pairs& gradients) {
   const auto parameters = named_parameters(model);
   io::load_parameters(parameters, file.content(), file.where(), "param.");
-  const Var h_txt = model.encode_text(file.sentences(context)), both = concat_axis({h_txt, h_txt}, 0);
+  const Var h_txt = model.encode_text(file.sentences(context)), both = concatenate({h_txt, h_txt}, 0);
   add_critic(
       file, parameters, [&](const Var& x) { return model(x, both); },
       [&](const Var& x) { return model(x, h_txt); }, outputs, gradients);

@@ -1,9 +1,9 @@
 // The models of the second paper on golden files.
 #pragma once
-#include <motiongan/models/attention_classifier.hpp>
-#include <motiongan/models/attention_critic.hpp>
-#include <motiongan/models/attention_generator.hpp>
-#include <motiongan/models/lstm_baseline.hpp>
+#include <motiongan/networks/attention_classifier.hpp>
+#include <motiongan/networks/attention_critic.hpp>
+#include <motiongan/networks/attention_generator.hpp>
+#include <motiongan/networks/lstm_baseline.hpp>
 #include <motiongan/ops/cross_entropy.hpp>
 
 #include "file.hpp"
@@ -29,7 +29,7 @@ inline void attention_critic(const File& file, const Context& context, Pairs& ou
                         {.dof = file.number("dof"), .hidden = file.number("hidden")});
   const auto parameters = named_parameters(model);
   io::load_parameters(parameters, file.content(), file.where(), "param.");
-  const Judge judge = [&](const Var& x) { return model(x); };
+  const CriticFn judge = [&](const Var& x) { return model(x); };
   add_critic(file, parameters, judge, judge, outputs, gradients);
 }
 

@@ -1,8 +1,8 @@
 // The baselines of motion completion on golden files.
 #pragma once
-#include <motiongan/models/erd.hpp>
-#include <motiongan/models/lstm_3lr.hpp>
-#include <motiongan/models/seq2seq.hpp>
+#include <motiongan/networks/erd.hpp>
+#include <motiongan/networks/lstm_3lr.hpp>
+#include <motiongan/networks/seq2seq.hpp>
 
 #include "file.hpp"
 
@@ -34,7 +34,7 @@ void next_pose_model(const File& file, const Context& context, Pairs& outputs, P
   io::load_parameters(parameters, file.content(), file.where(), "param.");
   const Var prefix = Var::constant(file.tensor(context, "in.prefix")),
             target = Var::constant(file.tensor(context, "in.future")),
-            window = concat_axis({prefix, target}, 0);
+            window = concatenate({prefix, target}, 0);
   const std::size_t count = window.dim(0) - 1;
   LstmState state;
   const Var next = model.next_poses(slice(window, 0, 0, count), state), made = model(prefix, target.dim(0));

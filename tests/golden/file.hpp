@@ -1,7 +1,7 @@
 // A golden file (a model's parameters, inputs and outputs, and all gradients, as PyTorch has them), and what
 // is said of ours beside it.
 #pragma once
-#include <motiongan/io/state_dict.hpp>
+#include <motiongan/nn/state_dict.hpp>
 #include <motiongan/nn/text_encoder.hpp>
 #include <motiongan/train/wgan_gp.hpp>
 
@@ -111,10 +111,10 @@ inline void add_gradients(Pairs& pairs, const File& file, const std::vector<Name
 
 /// Scores, penalty and loss of any critic, and their gradients; the judges as critic_loss() takes them.
 inline void add_critic(const File& file, const std::vector<NamedParameter>& parameters,
-                       const Judge& judge_pairs, const Judge& judge, Pairs& outputs, Pairs& gradients) {
+                       const CriticFn& critic_pairs, const CriticFn& judge, Pairs& outputs, Pairs& gradients) {
   const Context& context = parameters.front().value->context();
   const Tensor real = file.tensor(context, "in.real"), fake = file.tensor(context, "in.fake");
-  const CriticLoss loss = critic_loss(judge_pairs, judge, real, fake, file.tensor(context, "in.epsilon"), 10);
+  const CriticLoss loss = critic_loss(critic_pairs, judge, real, fake, file.tensor(context, "in.epsilon"), 10);
   const std::size_t batch = real.dim(1);
   outputs.push_back(output(file, "out.real", slice(loss.scores, 0, 0, batch)));
   outputs.push_back(output(file, "out.fake", slice(loss.scores, 0, batch, batch)));

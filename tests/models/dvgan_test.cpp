@@ -5,7 +5,7 @@
 #include <fstream>
 #include <limits>
 
-#include "small_data.hpp"
+#include "../support/small_data.hpp"
 
 using namespace motiongan;
 using namespace motiongan::testing;
@@ -126,7 +126,7 @@ TEST_CASE("with and without final cut") {
 }
 
 TEST_CASE("the RNN generator: any number of frames, alone as in a batch, and the same after a file") {
-  Dvgan model = made({.generator = Generator::rnn, .hidden = 12});
+  Dvgan model = made({.generator = GeneratorKind::rnn, .hidden = 12});
   CHECK_FALSE(model.options().cuts());
   const Poses all = model.generate_poses(caption, {.count = 66, .seed = 5});
   CHECK(all[65] == model.generate_poses(caption, {.count = 1, .seed = 5, .first_sample = 65})[0]);
@@ -144,7 +144,7 @@ TEST_CASE("the RNN generator: any number of frames, alone as in a batch, and the
 }
 
 TEST_CASE("the RNN generator with final cut: a piece of what it makes without") {
-  const Dvgan model = made({.generator = Generator::rnn, .hidden = 12, .final_cut = true});
+  const Dvgan model = made({.generator = GeneratorKind::rnn, .hidden = 12, .final_cut = true});
   const std::size_t dof = model.format().dof(), frames = model.format().frames;
   const Poses cut = model.generate_poses(caption, {.count = 3, .seed = 2}),
               whole = model.generate_poses(caption, {.count = 3, .seed = 2, .frames = 2 * frames});
@@ -153,7 +153,7 @@ TEST_CASE("the RNN generator with final cut: a piece of what it makes without") 
     REQUIRE(cut[i].size() == frames * dof);
     CHECK(std::equal(cut[i].begin(), cut[i].end(), whole[i].begin() + at[i] * static_cast<long>(dof)));
   }
-  CHECK(made({.generator = Generator::rnn, .hidden = 8, .final_cut = true}).generate(caption)[0].frames ==
+  CHECK(made({.generator = GeneratorKind::rnn, .hidden = 8, .final_cut = true}).generate(caption)[0].frames ==
         frames);
 }
 
@@ -165,7 +165,7 @@ TEST_CASE("a CNN generator asked for what only the RNN can says what to use") {
     CHECK(says(text, "--generator rnn"));
   }
   CHECK(model.generate(caption, {.frames = model.format().frames}).size() == 1);
-  CHECK(says(message_of([] { made({.generator = Generator::rnn, .hidden = 8}).cnn(); }), "RNN generator"));
+  CHECK(says(message_of([] { made({.generator = GeneratorKind::rnn, .hidden = 8}).cnn(); }), "RNN generator"));
 }
 
 TEST_CASE("sizes that cannot be are refused") {

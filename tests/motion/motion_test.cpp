@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "motiongan/motion/first_frame.hpp"
+#include "motiongan/data/first_frame.hpp"
 
 using namespace motiongan;
 using namespace motiongan::motion;

@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "../support/messages.hpp"
-#include "motiongan/motion/bone_list.hpp"
-#include "motiongan/motion/bvh.hpp"
+#include "motiongan/formats/bone_list.hpp"
+#include "motiongan/formats/bvh.hpp"
 #include "motiongan/motion/motion.hpp"
-#include "motiongan/motion/procedural.hpp"
+#include "motiongan/procedural/procedural.hpp"
 
 using namespace motiongan;
 using namespace motiongan::motion;

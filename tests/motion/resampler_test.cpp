@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "../support/messages.hpp"
-#include "walking_clips.hpp"
+#include "../support/walking_clips.hpp"
 
 using namespace motiongan;
 using namespace motiongan::motion;

@@ -1,7 +1,7 @@
 // Convolutions along time against plain loops.
 #include <doctest/doctest.h>
 
-#include <motiongan/models/residual.hpp>
+#include <motiongan/networks/residual.hpp>
 #include <motiongan/nn/linear.hpp>
 #include <motiongan/ops/reduce.hpp>
 
@@ -77,7 +77,7 @@ TEST_CASE("Conv1d::down is Down of the convolution, and so are its gradients") {
     CAPTURE(frames);
     const Var x = Var::leaf(random(frames, 2, 5).value());
     const std::size_t half = frames / 2;
-    const Var plain = sum_frames(slice(conv(x), 0, 0, 2 * half), 2, 0.5),
+    const Var plain = sum_pool(slice(conv(x), 0, 0, 2 * half), 2, 0.5),
               quick = conv_down(pair_means(x), conv.weight, conv.bias, frames);
     check_near(quick.value().to_host<double>(), plain.value().to_host<double>());
     check_near(
@@ -149,11 +149,11 @@ TEST_CASE("many rows, whose weights are packed first, give the bits of few rows"
           const Conv1d conv(init, in, out, taps_count);
           const Tensor x = random_normal(context, {.seed = 1}, frames, batch, in);
           const Tensor u = random_normal(context, {.seed = 2}, frames, batch, out);
-          const auto slopes = [&](const Tensor& at, const Tensor& seed) {
+          const auto values_and_gradients = [&](const Tensor& at, const Tensor& seed) {
             const Var leaf = Var::leaf(at), y = conv(leaf, {.relu = true});
             return std::pair{y.value(), grad({y}, {Var::constant(seed)}, {leaf})[0].value()};
           };
-          const auto [y, slope] = slopes(x, u);
+          const auto [y, gradient] = values_and_gradients(x, u);
           const auto halves = [&](const Tensor& at) {
             const Var pairs = pair_means(Var::constant(at));
             return taps_count == 3 ? conv_down(pairs, conv.weight, conv.bias, frames).value() : at;
@@ -162,9 +162,9 @@ TEST_CASE("many rows, whose weights are packed first, give the bits of few rows"
           for (const std::size_t b : {0u, 8u, 16u}) {
             CAPTURE(concat("in ", in, " out ", out, " taps ", taps_count, " sample ", b));
             const auto only = [&](const Tensor& t) { return slice(Var::constant(t), 1, b, 1).value(); };
-            const auto [y_alone, slope_alone] = slopes(only(x), only(u));
+            const auto [y_alone, gradient_alone] = values_and_gradients(only(x), only(u));
             CHECK(y_alone.to_host<double>() == only(y).to_host<double>());
-            CHECK(slope_alone.to_host<double>() == only(slope).to_host<double>());
+            CHECK(gradient_alone.to_host<double>() == only(gradient).to_host<double>());
             CHECK(halves(only(x)).to_host<double>() == only(halved).to_host<double>());
           }
         }

@@ -31,25 +31,25 @@ TEST_CASE("products of frames, sample by sample") {
   const Var a = Var::constant(Tensor::from(double_context(), {2, 2, 1}, std::vector<double>{1, 10, 2, 20}));
   const Var c =
       Var::constant(Tensor::from(double_context(), {3, 2, 1}, std::vector<double>{1, 1, 3, 5, 4, 6}));
-  const Var map = frame_products(a, c);
+  const Var map = attention_scores(a, c);
   CHECK(map.shape() == Shape{2, 2, 3});
   CHECK(map.value().to_host<double>() == std::vector<double>{1, 3, 4, 2, 6, 8, 10, 50, 60, 20, 100, 120});
-  CHECK(mix_frames(map, c).value().to_host<double>() ==
+  CHECK(attention_apply(map, c).value().to_host<double>() ==
         std::vector<double>{1 + 9 + 16, 10 + 250 + 360, 2 + 18 + 32, 20 + 500 + 720});
-  CHECK(mix_frames(map, a, true).shape() == Shape{3, 2, 1});
-  CHECK(mix_frames(map, a, true).value().to_host<double>().front() == 1 + 4);
+  CHECK(attention_apply(map, a, true).shape() == Shape{3, 2, 1});
+  CHECK(attention_apply(map, a, true).value().to_host<double>().front() == 1 + 4);
   CHECK(message_of([&] {
-          frame_products(a, random(2, 3, 1));
-        }).starts_with("frame_products: shapes [2, 2, 1]"));
+          attention_scores(a, random(2, 3, 1));
+        }).starts_with("attention_scores: shapes [2, 2, 1]"));
   CHECK(message_of([&] {
-          mix_frames(map, a);
-        }).starts_with("mix_frames: a map [2, 2, 3] over frames [2, 2, 1]"));
+          attention_apply(map, a);
+        }).starts_with("attention_apply: a map [2, 2, 3] over frames [2, 2, 1]"));
 }
 
 TEST_CASE("rows of a map sum to one, over the frames that are taken from") {
   const Var map = attention_map(random(4, 2, 3, 1), random(5, 2, 3, 2));
   CHECK(map.shape() == Shape{2, 5, 4});
-  for (const double total : sum_last(map).value().to_host<double>()) CHECK(total == doctest::Approx(1));
+  for (const double total : sum(map, -1).value().to_host<double>()) CHECK(total == doctest::Approx(1));
 }
 
 TEST_CASE("first, second and third derivative") {
@@ -57,10 +57,10 @@ TEST_CASE("first, second and third derivative") {
     CHECK(check_grads(double_context(), f, at, 3) < 1e-7);
   };
   const Input a = randn({3, 2, 4}), c = randn({5, 2, 4}), map = randn({2, 3, 5});
-  check([](auto& v) { return square(frame_products(v[0], v[1])); }, {a, c});
-  check([](auto& v) { return square(mix_frames(v[0], v[1])); }, {map, c});
-  check([](auto& v) { return square(mix_frames(v[0], v[1], true)); }, {map, a});
-  check([](auto& v) { return mix_frames(attention_map(v[0], v[1]), v[0]) * v[1]; }, {c, randn({5, 2, 4})});
+  check([](auto& v) { return square(attention_scores(v[0], v[1])); }, {a, c});
+  check([](auto& v) { return square(attention_apply(v[0], v[1])); }, {map, c});
+  check([](auto& v) { return square(attention_apply(v[0], v[1], true)); }, {map, a});
+  check([](auto& v) { return attention_apply(attention_map(v[0], v[1]), v[0]) * v[1]; }, {c, randn({5, 2, 4})});
 }
 
 TEST_CASE("the layer, by its input and all of its parameters") {

@@ -3,7 +3,7 @@
 
 #include <motiongan/ops/cross_entropy.hpp>
 #include <motiongan/ops/lstm.hpp>
-#include <motiongan/ops/taps.hpp>
+#include <motiongan/ops/conv1d.hpp>
 
 #include "../support/check_grads.hpp"
 
@@ -46,18 +46,19 @@ TEST_CASE("elementwise") {
 
 TEST_CASE("sums and expansions") {
   const Input x = randn({4, 3, 5});
-  check("sum_middle", [](auto& v) { return square(sum_middle(v[0], 4, 3, 5, 0.5, {4, 5})); }, {x});
-  check("sum_last", [](auto& v) { return square(sum_last(v[0])); }, {x});
+  for (int axis : {0, 1, 2, -1})
+    check("sum", [=](auto& v) { return square(sum(v[0], axis, 0.5)); }, {x});
+  check("sum_last", [](auto& v) { return square(sum(v[0], -1)); }, {x});
   check("mean", [](auto& v) { return square(mean(v[0])); }, {x});
   check(
-      "long sum", [](auto& v) { return square(sum_middle(v[0], 1, 300, 2, 1, {2})); }, {randn({300, 2})}, 2);
-  check("mean_frames", [](auto& v) { return square(mean_frames(v[0])); }, {x});
+      "long sum", [](auto& v) { return square(sum(v[0], 0)); }, {randn({300, 2})}, 2);
+  check("mean_frames", [](auto& v) { return square(mean(v[0], 0)); }, {x});
   check("sum_per_sample", [](auto& v) { return square(sum_per_sample(v[0])); }, {x});
-  check("expand", [](auto& v) { return square(expand(v[0], 3, 2, 5, 0.7, {3, 2, 5})); }, {randn({3, 5})});
-  check("expand_samples", [](auto& v) { return square(expand_samples(v[0], 4, 5)); }, {randn({3})});
-  check("expand_scalar", [](auto& v) { return square(expand_scalar(v[0], {2, 3})); }, {randn({1})});
-  check("repeat_frames", [](auto& v) { return square(repeat_frames(v[0], 2)); }, {x});
-  check("sum_frames", [](auto& v) { return square(sum_frames(v[0], 2, 0.5)); }, {x});
+  for (const Shape& from : {Shape{5}, Shape{1}, Shape{3, 1}, Shape{3, 5}, Shape{4, 1, 5}, Shape{1, 3, 1}})
+    check("broadcast_to", [](auto& v) { return square(broadcast_to(v[0], {4, 3, 5})); }, {randn(from)});
+  check("expand_scalar", [](auto& v) { return square(broadcast_to(v[0], {2, 3})); }, {randn({1})});
+  check("upsample_nearest", [](auto& v) { return square(upsample_nearest(v[0], 2)); }, {x});
+  check("sum_frames", [](auto& v) { return square(sum_pool(v[0], 2, 0.5)); }, {x});
   check("softmax", [](auto& v) { return softmax(v[0]) * v[1]; }, {x, randn({4, 3, 5})});
   check("log_softmax", [](auto& v) { return square(log_softmax(v[0])) * v[1]; }, {x, randn({4, 3, 5})});
   check("cross_entropy", [](auto& v) { return cross_entropy(v[0], v[1]); }, {randn({4, 3}), randn({4, 3})});
@@ -82,7 +83,7 @@ TEST_CASE("layout") {
           {x, randn({axis == 0 ? 8u : 5u, axis == 1 ? 6u : 3u, axis == 2 ? 7u : 4u})});
     check("concat",
           [=](auto& v) {
-            return square(concat_axis({v[0], v[1], v[0]}, axis));
+            return square(concatenate({v[0], v[1], v[0]}, axis));
           },
           {x, randn({axis == 0 ? 2u : 5u, axis == 1 ? 2u : 3u, axis == 2 ? 2u : 4u})});
   }
@@ -112,33 +113,33 @@ TEST_CASE("matmul, plain, transposed and in batches") {
 TEST_CASE("taps: convolutions and linear layers") {
   for (bool transposed : {false, true})
     for (std::size_t frames : {1, 2, 5}) {
-      const auto conv = [=](auto& v) { return square(taps(v[0], v[1], {-1, 0, 1}, frames, transposed)); };
+      const auto conv = [=](auto& v) { return square(conv1d(v[0], v[1], {-1, 0, 1}, frames, transposed)); };
       check("3 taps", conv, {randn({frames, 2, 4}), randn({3, transposed ? 4u : 3u, transposed ? 3u : 4u})},
             2);
     }
   check(
       "5 taps",
       [](auto& v) {
-        return square(taps(v[0], v[1], {-2, -1, 0, 1, 2}, 4));
+        return square(conv1d(v[0], v[1], {-2, -1, 0, 1, 2}, 4));
       },
       {randn({4, 2, 3}), randn({5, 3, 3})}, 2);
   check("uneven offsets",
         [](auto& v) {
-          return square(taps(v[0], v[1], {0, 3, 1}, 2));
+          return square(conv1d(v[0], v[1], {0, 3, 1}, 2));
         },
         {randn({5, 2, 3}), randn({3, 4, 3})});
   check("bias and residual",
-        [](auto& v) { return square(taps(v[0], v[1], {0}, 4, false, {.bias = v[2], .residual = v[3]})); },
+        [](auto& v) { return square(conv1d(v[0], v[1], {0}, 4, false, {.bias = v[2], .residual = v[3]})); },
         {randn({4, 3}), randn({1, 5, 3}), randn({5}), randn({4, 5})});
   Input apart = randn({5}, 20);  // every sum is far from ReLU's kink
   check(
       "bias and relu",
-      [](auto& v) { return square(taps(v[0], v[1], {0}, 4, false, {.bias = v[2], .relu = true})); },
+      [](auto& v) { return square(conv1d(v[0], v[1], {0}, 4, false, {.bias = v[2], .relu = true})); },
       {randn({4, 3}), randn({1, 5, 3}), apart}, 2);
   check(
       "weights",
       [](auto& v) {
-        return square(taps_weight(v[0], v[1], {-1, 0, 1}));
+        return square(conv1d_weight(v[0], v[1], {-1, 0, 1}));
       },
       {randn({4, 2, 3}), randn({4, 2, 5})}, 2);
 }

@@ -31,7 +31,7 @@ Var composed(const Var& x, const Var& w, const Var& h, const Var& c) {
 }
 
 /// Gradient of <g, layer> by the gates alone, as a gradient penalty takes it. v: gates, weights, g.
-Function slope_of(const Layer& layer, const Var& h_first, const Var& c_first) {
+Function gate_gradient_of(const Layer& layer, const Var& h_first, const Var& c_first) {
   return [=](const std::vector<Var>& v) {
     return grad({layer(v[0], v[1], h_first, c_first)}, {v[2]}, {v[0]}, {.create_graph = true})[0];
   };
@@ -69,11 +69,11 @@ TEST_CASE("the gradient by the gates alone, differentiated by gates, weights and
       const auto in = layer_inputs(frames, k);
       const Var h = constant(in[2]), c = constant(in[3]);
       const std::vector<Input> at{in[0], in[1], randn({2, frames, batch, k})};
-      CHECK(check_grads(double_context(), slope_of(fused, h, c), at, k == 3 ? 3 : 2) < 1e-7);
-      // Beside the composed form: the slope, and its gradients by all three.
+      CHECK(check_grads(double_context(), gate_gradient_of(fused, h, c), at, k == 3 ? 3 : 2) < 1e-7);
+      // Beside the composed form: the gradient, and its gradients by all three.
       std::vector<Var> v;
       for (const Input& input : at) v.push_back(Var::leaf(on_device(input)));
-      const Var a = slope_of(fused, h, c)(v), b = slope_of(composed, h, c)(v);
+      const Var a = gate_gradient_of(fused, h, c)(v), b = gate_gradient_of(composed, h, c)(v);
       check_equal(a, b, 1e-12);
       const Var u = constant(randn(a.shape()));
       const auto of_a = grad({a}, {u}, v), of_b = grad({b}, {u}, v);
@@ -90,8 +90,8 @@ TEST_CASE("a penalty on the gradient through two layers") {
       const Var inner = hidden_states(layer(v[0], v[1], h, c));
       const Var gates = reshape(matmul(reshape(inner, {frames * batch, k}), v[3]), {frames, batch, 4 * k});
       const Var score = sum(square(hidden_states(layer(gates, v[2], h, c))));
-      const Var slope = grad(score, {v[0]}, {.create_graph = true})[0];
-      return mean(square(sqrt(sum_per_sample(square(slope))) - 1));
+      const Var gradient = grad(score, {v[0]}, {.create_graph = true})[0];
+      return mean(square(sqrt(sum_per_sample(square(gradient))) - 1));
     };
   };
   const std::vector<Input> at{first[0], first[1], second[1], randn({k, 4 * k})};
@@ -157,16 +157,16 @@ TEST_CASE("h alone: the layer without its cells, to the third derivative") {
     const Function alone = [](auto& v) { return lstm_hidden(v[0], v[1]); };
     const Function taken = [&](auto& v) { return hidden_states(lstm_layer(v[0], v[1], zero, zero)); };
     CHECK(check_grads(double_context(), alone, {in[0], in[1]}, 3) < 1e-7);
-    const auto slope = [&](const Function& f) -> Function {
+    const auto gradient = [&](const Function& f) -> Function {
       return [&f](const std::vector<Var>& v) {
         return grad({f({v[0], v[1]})}, {v[2]}, {v[0]}, {.create_graph = true})[0];
       };
     };
     const std::vector<Input> at{in[0], in[1], randn({frames, batch, k})};
-    CHECK(check_grads(double_context(), slope(alone), at, 3) < 1e-7);
+    CHECK(check_grads(double_context(), gradient(alone), at, 3) < 1e-7);
     std::vector<Var> v;
     for (const Input& input : at) v.push_back(Var::leaf(on_device(input)));
-    const Var a = slope(alone)(v), b = slope(taken)(v);
+    const Var a = gradient(alone)(v), b = gradient(taken)(v);
     check_equal(a, b, 0);
     const Var u = constant(randn(a.shape()));
     const auto of_a = grad({a}, {u}, v), of_b = grad({b}, {u}, v);

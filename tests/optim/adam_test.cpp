@@ -120,7 +120,7 @@ TEST_CASE("all parameters move into one buffer, and one launch updates them") {
 
 TEST_CASE("a gradient of zero moves nothing at first") {
   const Context context;
-  Var p = Var::leaf(filled(context, {3}, 2));
+  Var p = Var::leaf(full(context, {3}, 2));
   Adam adam({{"p", &p}});
   adam.step({zeros(context, {3})});
   CHECK(p.value().to_host() == std::vector<float>(3, 2));
@@ -128,7 +128,7 @@ TEST_CASE("a gradient of zero moves nothing at first") {
 
 TEST_CASE("wrong gradients are refused and change nothing") {
   const Context context;
-  Var p = Var::leaf(filled(context, {2, 3}, 1)), q = Var::leaf(filled(context, {3}, 1));
+  Var p = Var::leaf(full(context, {2, 3}, 1)), q = Var::leaf(full(context, {3}, 1));
   CHECK_THROWS_WITH_AS(Adam({}), "Adam: no parameters", Error);
   Adam adam({{"p", &p}, {"q", &q}});
   CHECK_THROWS_WITH_AS(adam.step({ones(context, {2, 3})}), "Adam: 1 gradients for 2 parameters", Error);

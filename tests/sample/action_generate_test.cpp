@@ -1,7 +1,7 @@
 // Whole clips of the attention model: schedules, priors in front, clips made again.
 #include <doctest/doctest.h>
 
-#include <motiongan/motion/procedural.hpp>
+#include <motiongan/procedural/procedural.hpp>
 #include <motiongan/sample/action_generate.hpp>
 
 #include "../support/messages.hpp"
@@ -65,7 +65,7 @@ TEST_CASE("schedules are read, and what is wrong with them is named") {
 }
 
 TEST_CASE("a schedule's class changes on the frame; the prior stands in front") {
-  const AttentionGan model(context(), data().format, {.hidden = 8});
+  const ActionGan model(context(), data().format, {.hidden = 8});
   std::vector<ActionPrior> priors;
   for (std::size_t i = 0; i < 3; ++i)
     priors.push_back(prior_from(clip_of(data(), data().train[i]), data().format));
@@ -102,7 +102,7 @@ TEST_CASE("a synthetic clip has the real one's prior, class and length") {
   for (const bool root : {true, false}) {
     const ActionDataset& d = data(root);
     for (const ActionGenerator kind : {ActionGenerator::attention, ActionGenerator::lstm}) {
-      const AttentionGan model(context(), d.format, {.generator = kind, .hidden = 8});
+      const ActionGan model(context(), d.format, {.generator = kind, .hidden = 8});
       const std::vector<SyntheticClip> made = synthesise(model, d, d.train);
       REQUIRE(made.size() == d.train.size());
       const std::size_t joints = d.format.skeleton().size();
@@ -131,7 +131,7 @@ TEST_CASE("a synthetic clip has the real one's prior, class and length") {
   for (auto& m : fewer) m.captions = {m.id.substr(0, m.id.find('_'))};
   const auto other =
       ActionDataset::from_motions(fewer, {.frames = 8, .rate = 10, .train_share = 1, .classes = {"kick"}});
-  const AttentionGan model(context(), data().format, {.hidden = 8});
+  const ActionGan model(context(), data().format, {.hidden = 8});
   CHECK_THROWS_WITH_AS(synthesise(model, other, other.train), doctest::Contains("there is no class 'kick'"),
                        Error);
 }

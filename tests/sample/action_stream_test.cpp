@@ -1,7 +1,7 @@
 // Characters of the attention model: whoever stands beside them, whatever comes and goes.
 #include <doctest/doctest.h>
 
-#include <motiongan/motion/procedural.hpp>
+#include <motiongan/procedural/procedural.hpp>
 #include <motiongan/sample/action_generate.hpp>
 
 #include "../support/messages.hpp"
@@ -30,8 +30,8 @@ const ActionDataset& data(bool root = true) {
   return root ? with : without;
 }
 
-AttentionGan make_model(const AttentionGanOptions& options = {.hidden = 8}, bool root = true) {
-  AttentionGan model(context(), data(root).format, options);
+ActionGan make_model(const ActionGanOptions& options = {.hidden = 8}, bool root = true) {
+  ActionGan model(context(), data(root).format, options);
   for (const NamedParameter& p : named_parameters(model))
     if (p.name == "attention.gamma") p.value->node()->value.write(std::span<const float>({0.7f}));
   return model;
@@ -49,7 +49,7 @@ std::vector<float> stepped(const ActionStream& stream, ActionStream::Id id) {
 
 double apart(const motion::Vec3& a, const motion::Vec3& b) { return motion::length(motion::subtract(a, b)); }
 
-const std::vector<AttentionGanOptions> kinds{
+const std::vector<ActionGanOptions> kinds{
     {.hidden = 8},
     {.hidden = 8, .noise_dim = 3},
     {.generator = ActionGenerator::lstm, .hidden = 8},
@@ -80,8 +80,8 @@ TEST_CASE("a prior is the clip's own poses, from any frame on") {
 }
 
 TEST_CASE("a character moves as it would alone, whatever comes and goes") {
-  for (const AttentionGanOptions& kind : kinds) {
-    const AttentionGan model = make_model(kind);
+  for (const ActionGanOptions& kind : kinds) {
+    const ActionGan model = make_model(kind);
     std::vector<ActionPrior> priors;
     for (std::size_t i = 0; i < data().train.size(); ++i) priors.push_back(prior(i));
     // Alone: walks two steps, jumps one, runs half a one, then on.
@@ -121,8 +121,8 @@ TEST_CASE("a character moves as it would alone, whatever comes and goes") {
 
 TEST_CASE("the first second is the model's, noise and class count") {
   const ActionPrior p = prior(0);
-  for (const AttentionGanOptions& kind : kinds) {
-    const AttentionGan model = make_model(kind);
+  for (const ActionGanOptions& kind : kinds) {
+    const ActionGan model = make_model(kind);
     ActionStream stream(model);
     const auto a = stream.add({.prior = &p, .label = 0, .seed = 5, .sample = 3});
     const auto other_class = stream.add({.prior = &p, .label = 1, .seed = 5, .sample = 3});
@@ -142,7 +142,7 @@ TEST_CASE("the first second is the model's, noise and class count") {
 
 TEST_CASE("the root goes on from where the prior ended, or stands") {
   for (const bool root : {true, false}) {
-    const AttentionGan model = make_model({.hidden = 8}, root);
+    const ActionGan model = make_model({.hidden = 8}, root);
     ActionPrior p = prior(0, 4, root);
     p.places.back().x += 1000;
     ActionStream stream(model);
@@ -165,7 +165,7 @@ TEST_CASE("the root goes on from where the prior ended, or stands") {
 }
 
 TEST_CASE("streams refuse what cannot be") {
-  const AttentionGan model = make_model();
+  const ActionGan model = make_model();
   ActionStream stream(model);
   const ActionPrior p = prior(0);
   ActionPrior cut = p;

@@ -3,7 +3,7 @@
 
 #include <motiongan/sample/motion_stream.hpp>
 
-#include "../models/small_data.hpp"
+#include "../support/small_data.hpp"
 
 using namespace motiongan;
 using namespace motiongan::testing;
@@ -28,7 +28,7 @@ std::vector<motion::LabelledMotion> clips() {
 Dvgan make_model(RootRotation form, bool position = true) {
   const auto data = motion::Dataset::from_motions(
       clips(), {.frames = 8, .rate = 4, .root_position = position, .root_rotation = form});
-  return Dvgan(context(), data.format, {.generator = Generator::rnn, .hidden = 8});
+  return Dvgan(context(), data.format, {.generator = GeneratorKind::rnn, .hidden = 8});
 }
 
 const Dvgan& model() {

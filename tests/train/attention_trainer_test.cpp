@@ -6,7 +6,7 @@
 #include <numeric>
 #include <set>
 
-#include "../models/small_actions.hpp"
+#include "../support/small_actions.hpp"
 
 using namespace motiongan;
 using namespace motiongan::testing;
@@ -18,10 +18,10 @@ const AttentionTrainOptions small_options{.iterations = 4, .critic_steps = 2, .b
 
 struct Run {
   Context context;
-  AttentionGan model;
+  ActionGan model;
   AttentionTrainer trainer;
   explicit Run(const AttentionTrainOptions& options = small_options,
-               const AttentionGanOptions& gan = {.hidden = 8})
+               const ActionGanOptions& gan = {.hidden = 8})
       : model(context, small_actions().format, gan), trainer(model, small_actions(), options) {}
 };
 
@@ -90,7 +90,7 @@ TEST_CASE("while the generator learns, no gradient of critic and classifier is c
   CHECK(frozen > 0);
   CHECK(products(false) == frozen);
   const Var motion = Var::leaf(batch.motion);
-  const auto judged = [&](const std::vector<Var>& by) {
+  const auto flops_of_gradient = [&](const std::vector<Var>& by) {
     const Var score = mean(run.trainer.critic()(motion));
     const double before = run.context.statistics().gemm_flops;
     grad(score, by);
@@ -98,7 +98,7 @@ TEST_CASE("while the generator learns, no gradient of critic and classifier is c
   };
   std::vector<Var> with_weights = critic;
   with_weights.push_back(motion);
-  CHECK(judged(with_weights) > 1.5 * judged({motion}));  // what the gradient of the weights would have cost
+  CHECK(flops_of_gradient(with_weights) > 1.5 * flops_of_gradient({motion}));  // what the gradient of the weights would have cost
 }
 
 TEST_CASE("losses are those of their definitions, averaged over the rollouts") {
@@ -114,7 +114,7 @@ TEST_CASE("losses are those of their definitions, averaged over the rollouts") {
   const Var classes = Var::constant(batch.classes), prior = Var::constant(batch.prior);
   const Var first = run.model.make(prior, classes), second = run.model.make(first, classes);
   const auto score = [&](const Var& a, const Var& b) {
-    return mean(run.trainer.critic()(concat_axis({a, b}, 0))).item();
+    return mean(run.trainer.critic()(concatenate({a, b}, 0))).item();
   };
   const SkeletonLoss skeleton(run.context, run.model.format());
   const double adversarial = -(score(prior, first) + score(first, second)) / 2,
@@ -153,7 +153,7 @@ TEST_CASE("weight clipping instead of the penalty") {
 }
 
 TEST_CASE("every piece is an option") {
-  const auto trained = [](const AttentionTrainOptions& options, const AttentionGanOptions& gan) {
+  const auto trained = [](const AttentionTrainOptions& options, const ActionGanOptions& gan) {
     Run run(options, gan);
     run.trainer.iterate();
     return values_in(run.model);
@@ -180,7 +180,7 @@ TEST_CASE("a resumed run equals an unbroken one bit for bit") {
   for (const bool clipped : {false, true}) {
     AttentionTrainOptions options = small_options;
     options.weight_clip = clipped ? 0.05 : 0;
-    const AttentionGanOptions gan{.hidden = 8, .noise_dim = 2};
+    const ActionGanOptions gan{.hidden = 8, .noise_dim = 2};
     Run unbroken(options, gan), first(options, gan), second(options, gan);
     for (int i = 0; i < 3; ++i) unbroken.trainer.iterate();
     first.trainer.iterate();
@@ -197,7 +197,7 @@ TEST_CASE("a resumed run equals an unbroken one bit for bit") {
 TEST_CASE("whole runs: files, log, a model that loads, the baseline too") {
   const Scratch scratch;
   const Context context;
-  AttentionGan model(context, small_actions().format, {.hidden = 8});
+  ActionGan model(context, small_actions().format, {.hidden = 8});
   std::size_t reports = 0;
   AttentionRunOptions run{.save_dir = scratch.path / "gan"};
   run.report = [&](std::size_t, const AttentionLosses& l) {
@@ -212,12 +212,12 @@ TEST_CASE("whole runs: files, log, a model that loads, the baseline too") {
                            files.log(), files.split()})
     CHECK(fs::exists(file));
   CHECK(read_csv_log(files.log()).column("gamma").size() == 4);
-  AttentionGan loaded = AttentionGan::load(context, files.generator());
+  ActionGan loaded = ActionGan::load(context, files.generator());
   CHECK(values_in(loaded) == values_in(model));
-  AttentionGan from_checkpoint = AttentionGan::load(context, files.checkpoint());
+  ActionGan from_checkpoint = ActionGan::load(context, files.checkpoint());
   CHECK(values_in(from_checkpoint) == values_in(model));
 
-  AttentionGan baseline(context, small_actions().format, {.generator = ActionGenerator::lstm, .hidden = 8});
+  ActionGan baseline(context, small_actions().format, {.generator = ActionGenerator::lstm, .hidden = 8});
   const BaselineTrainOptions options{.iterations = 80, .batch = 16, .adam = {.learning_rate = 1e-2}};
   train(baseline, small_actions(), options, BaselineRunOptions{.save_dir = scratch.path / "lstm"});
   const auto errors = read_csv_log(scratch.path / "lstm" / "log.csv").column("error");
@@ -227,7 +227,7 @@ TEST_CASE("whole runs: files, log, a model that loads, the baseline too") {
            20;
   };
   CHECK(mean_of(60) < 0.8 * mean_of(0));
-  CHECK(AttentionGan::load(context, scratch.path / "lstm" / "generator.safetensors").is_baseline());
+  CHECK(ActionGan::load(context, scratch.path / "lstm" / "generator.safetensors").is_baseline());
   CHECK(says(message_of([&] { train(baseline, small_actions(), small_options); }), "LSTM baseline"));
   CHECK(says(message_of([&] { train(model, small_actions(), options); }), "not the LSTM baseline"));
 }
@@ -255,7 +255,7 @@ TEST_CASE("options that cannot be") {
   CHECK(says(message_of([] { Run({.iterations = 10'000'000}); }), "counter"));
   const Context context;
   CHECK(says(message_of([&] {
-               AttentionGan(context, small_actions().format,
+               ActionGan(context, small_actions().format,
                             {.generator = ActionGenerator::lstm, .noise_dim = 3});
              }),
              "takes no noise"));

@@ -6,7 +6,7 @@
 #include <limits>
 #include <motiongan/train/train.hpp>
 
-#include "../models/small_data.hpp"
+#include "../support/small_data.hpp"
 
 using namespace motiongan;
 using namespace motiongan::testing;
@@ -31,7 +31,7 @@ struct Run {
   Dvgan model;
   DvganTrainer trainer;
   explicit Run(const DvganTrainOptions& options = small_options, std::size_t frames = 8,
-               std::size_t hidden = 8, Generator generator = Generator::cnn)
+               std::size_t hidden = 8, GeneratorKind generator = GeneratorKind::cnn)
       : model(context, small_data(frames).format, {.generator = generator, .hidden = hidden}),
         trainer(model, small_data(frames), options) {}
 
@@ -98,8 +98,8 @@ TEST_CASE("the recurrent networks resume as well, and not as the others") {
   const Scratch scratch;
   const fs::path path = scratch.path / "checkpoint.safetensors";
   DvganTrainOptions options = small_options;
-  options.critic.critic = Critic::rnn;
-  const auto fresh = [&] { return Run(options, 8, 8, Generator::rnn); };
+  options.critic.critic = CriticKind::rnn;
+  const auto fresh = [&] { return Run(options, 8, 8, GeneratorKind::rnn); };
   Run unbroken = fresh(), first = fresh(), second = fresh();
   unbroken.iterate(4);
   first.iterate(2);
@@ -107,7 +107,7 @@ TEST_CASE("the recurrent networks resume as well, and not as the others") {
   load_checkpoint(second.trainer, path);
   second.iterate(4);
   CHECK(second.state() == unbroken.state());
-  Run other_critic(small_options, 8, 8, Generator::rnn), other_generator(options);
+  Run other_critic(small_options, 8, 8, GeneratorKind::rnn), other_generator(options);
   CHECK(says(message_of([&] { load_checkpoint(other_critic.trainer, path); }), "critic = 1"));
   CHECK(says(message_of([&] { load_checkpoint(other_generator.trainer, path); }), "another model"));
 }

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <motiongan/train/train_prediction.hpp>
 
-#include "../models/small_actions.hpp"
+#include "../support/small_actions.hpp"
 
 using namespace motiongan;
 using namespace motiongan::testing;

@@ -2,10 +2,10 @@
 #include <doctest/doctest.h>
 
 #include <filesystem>
-#include <motiongan/eval/ranker_evaluation.hpp>
+#include <motiongan/experiments/ranker_evaluation.hpp>
 #include <motiongan/train/ranker_trainer.hpp>
 
-#include "../models/small_data.hpp"
+#include "../support/small_data.hpp"
 
 using namespace motiongan;
 using namespace motiongan::testing;

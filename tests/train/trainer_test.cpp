@@ -3,7 +3,7 @@
 
 #include <motiongan/train/train.hpp>
 
-#include "../models/small_data.hpp"
+#include "../support/small_data.hpp"
 
 using namespace motiongan;
 using namespace motiongan::testing;
@@ -48,8 +48,8 @@ TEST_CASE("two runs are equal bit for bit, whichever options") {
   }
   for (const bool cut : {false, true}) {
     const DvganTrainOptions options{
-        .critic_steps = 1, .batch = 3, .critic = {.critic = cut ? Critic::cnn : Critic::rnn}};
-    const DvganOptions sizes{.generator = Generator::rnn, .hidden = 8, .final_cut = cut};
+        .critic_steps = 1, .batch = 3, .critic = {.critic = cut ? CriticKind::cnn : CriticKind::rnn}};
+    const DvganOptions sizes{.generator = GeneratorKind::rnn, .hidden = 8, .final_cut = cut};
     Run a(options, sizes), b(options, sizes);
     for (int i = 0; i < 3; ++i) {
       a.trainer.iterate();
@@ -89,8 +89,8 @@ void check_what_steps_change(Run run) {
 
 TEST_CASE("a critic step changes the critic alone, a generator step the generator alone") {
   check_what_steps_change(Run());
-  check_what_steps_change(Run({.critic_steps = 2, .batch = 4, .critic = {.critic = Critic::rnn}},
-                              {.generator = Generator::rnn, .hidden = 8}));
+  check_what_steps_change(Run({.critic_steps = 2, .batch = 4, .critic = {.critic = CriticKind::rnn}},
+                              {.generator = GeneratorKind::rnn, .hidden = 8}));
 }
 
 TEST_CASE("the generator's gradient costs the same when the critic's parameters are constants") {
@@ -154,8 +154,8 @@ TEST_CASE("steady state: no allocation, no read-back, memory flat over 2,000 ite
 }
 
 TEST_CASE("the same for the recurrent networks") {
-  Run run({.iterations = 300, .critic_steps = 1, .batch = 2, .critic = {.critic = Critic::rnn}},
-          {.generator = Generator::rnn, .hidden = 8});
+  Run run({.iterations = 300, .critic_steps = 1, .batch = 2, .critic = {.critic = CriticKind::rnn}},
+          {.generator = GeneratorKind::rnn, .hidden = 8});
   const ContextStatistics& now = run.context.statistics();
   for (int i = 0; i < 200; ++i) run.trainer.iterate();  // every length of sentence has been seen
   const ContextStatistics warm = now;
@@ -166,7 +166,7 @@ TEST_CASE("the same for the recurrent networks") {
 }
 
 TEST_CASE("completions in training: fakes that begin as the real motion does") {
-  const DvganOptions sizes{.generator = Generator::rnn, .hidden = 8};
+  const DvganOptions sizes{.generator = GeneratorKind::rnn, .hidden = 8};
   const auto options = [](double share) {
     return DvganTrainOptions{.critic_steps = 2, .batch = 3, .completion_share = share};
   };
@@ -184,7 +184,7 @@ TEST_CASE("completions in training: fakes that begin as the real motion does") {
     CHECK((after[i] == first[i]) == (name.starts_with("initial_plot.") || name.starts_with("decode.")));
   }
   const NoGrad values_only;
-  const Batch batch = WindowSampler(all.context, small_data()).draw(1, 0, 2);
+  const CaptionedBatch batch = WindowSampler(all.context, small_data()).draw(1, 0, 2);
   const std::vector<float> fake =
       all.model.complete(batch.text, slice(Var::constant(batch.motion), 0, 0, 3), {}).value().to_host();
   const std::vector<float> real = batch.motion.to_host();
@@ -200,7 +200,7 @@ TEST_CASE("windows are a function of seed and step, and are real windows of the 
   const motion::Dataset& data = small_data();
   const WindowSampler sampler(context, data);
   const std::size_t dof = data.format.dof(), size = 6;
-  const Batch batch = sampler.draw(1, 5, size);
+  const CaptionedBatch batch = sampler.draw(1, 5, size);
   CHECK(sampler.draw(1, 5, size).motion.to_host() == batch.motion.to_host());
   CHECK(sampler.draw(1, 6, size).motion.to_host() != batch.motion.to_host());
   CHECK(sampler.draw(2, 5, size).motion.to_host() != batch.motion.to_host());

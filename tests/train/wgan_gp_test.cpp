@@ -25,7 +25,7 @@ std::vector<double> host(const Var& v) { return v.value().to_host<double>(); }
 /// D(x) = <w, x> per sample; w is [frames, channels].
 Var linear_critic(const Var& x, const Var& w) {
   const std::size_t samples = x.dim(1);
-  return sum_per_sample(x * expand(w, frames, samples, channels, 1, {frames, samples, channels}));
+  return sum_per_sample(x * broadcast_to(reshape(w, {frames, 1, channels}), {frames, samples, channels}));
 }
 
 }  // namespace
@@ -40,9 +40,9 @@ TEST_CASE("penalty of a linear critic is (|w| - 1)^2, its gradient 2 (|w| - 1) w
   const Var penalty = gradient_penalty([&](const Var& m) { return linear_critic(m, w); }, x);
   CHECK(penalty.shape() == Shape{1});
   CHECK(penalty.item() == doctest::Approx((norm - 1) * (norm - 1)).epsilon(1e-11));
-  const std::vector<double> slope = host(grad(penalty, {w})[0]);
+  const std::vector<double> gradient = host(grad(penalty, {w})[0]);
   for (std::size_t i = 0; i < weights.size(); ++i)
-    CHECK(slope[i] == doctest::Approx(2 * (norm - 1) * weights[i] / norm).epsilon(1e-11));
+    CHECK(gradient[i] == doctest::Approx(2 * (norm - 1) * weights[i] / norm).epsilon(1e-11));
 }
 
 TEST_CASE("the norm is over all frames and channels of each sample by itself") {
@@ -59,12 +59,12 @@ TEST_CASE("the norm is over all frames and channels of each sample by itself") {
       }
     expected += (std::sqrt(square) - 1) * (std::sqrt(square) - 1) / batch;
   }
-  const Judge judge = [](const Var& m) { return 0.5 * sum_per_sample(square(m)); };
+  const CriticFn judge = [](const Var& m) { return 0.5 * sum_per_sample(square(m)); };
   CHECK(gradient_penalty(judge, Var::leaf(x)).item() == doctest::Approx(expected).epsilon(1e-11));
 }
 
-TEST_CASE("a critic without slope: the penalty is 1, and its gradient is finite") {
-  const Var w = Var::leaf(filled(double_context(), {frames, channels}, 0));
+TEST_CASE("a critic without gradient: the penalty is 1, and its gradient is finite") {
+  const Var w = Var::leaf(full(double_context(), {frames, channels}, 0));
   const Var penalty =
       gradient_penalty([&](const Var& m) { return linear_critic(m, w); }, Var::leaf(motion(2)));
   CHECK(penalty.item() == doctest::Approx(1).epsilon(1e-5));
@@ -85,7 +85,7 @@ TEST_CASE("the penalty of a curved critic: gradient against central differences"
 
 TEST_CASE("mix: real where eps is 1, fake where it is 0, a leaf") {
   const Tensor real = motion(1), fake = motion(2), eps = constant({batch}, {0, 1, 0.25, 0.5}).value();
-  const Var mixed = mix(real, fake, eps);
+  const Var mixed = interpolate(real, fake, eps);
   CHECK(mixed.requires_grad());
   CHECK(mixed.node()->inputs.empty());
   const std::vector<double> r = real.to_host<double>(), f = fake.to_host<double>(), e = eps.to_host<double>(),
@@ -99,7 +99,7 @@ TEST_CASE("mix: real where eps is 1, fake where it is 0, a leaf") {
 TEST_CASE("the parts of the critic's loss") {
   const std::vector<double> weights{1, 0, 0, 2, 0, -2};  // |w| = 3
   const Var w = Var::leaf(Tensor::from(double_context(), {frames, channels}, weights));
-  const Judge judge = [&](const Var& m) { return linear_critic(m, w); };
+  const CriticFn judge = [&](const Var& m) { return linear_critic(m, w); };
   const Tensor real = motion(1), fake = motion(2);
   const CriticLoss loss =
       critic_loss(judge, judge, real, fake, constant({batch}, {0.1, 0.2, 0.3, 0.4}).value(), 10);
@@ -118,7 +118,7 @@ TEST_CASE("the parts of the critic's loss") {
   CHECK(generator_loss(judge(Var::constant(fake))).item() == doctest::Approx(-mean_fake));
 
   // d/dw: mean fake - mean real + 10 * 2 (|w| - 1) w / |w|
-  const std::vector<double> slope = host(grad(loss.loss, {w})[0]), r = real.to_host<double>(),
+  const std::vector<double> gradient = host(grad(loss.loss, {w})[0]), r = real.to_host<double>(),
                             f = fake.to_host<double>();
   for (std::size_t t = 0; t < frames; ++t)
     for (std::size_t c = 0; c < channels; ++c) {
@@ -127,6 +127,6 @@ TEST_CASE("the parts of the critic's loss") {
         const std::size_t at = (t * batch + b) * channels + c;
         expected += (f[at] - r[at]) / batch;
       }
-      CHECK(slope[t * channels + c] == doctest::Approx(expected).epsilon(1e-10));
+      CHECK(gradient[t * channels + c] == doctest::Approx(expected).epsilon(1e-10));
     }
 }

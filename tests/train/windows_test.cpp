@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "motiongan/motion/procedural.hpp"
+#include "motiongan/procedural/procedural.hpp"
 
 using namespace motiongan;
 
@@ -17,7 +17,7 @@ TEST_CASE("the device draws the host's windows, turned and not") {
           motions, {.frames = 8, .rate = 4, .root_position = root_position, .root_rotation = mode});
       REQUIRE(data.train.size() >= 2);
       const std::size_t dof = data.format.dof(), batch = 16;
-      const Batch drawn = WindowSampler(context, data).draw(3, 7, batch);
+      const CaptionedBatch drawn = WindowSampler(context, data).draw(3, 7, batch);
       const std::vector<float> values = drawn.motion.to_host();
       std::vector<std::size_t> seen(data.train.size(), 0);
       for (std::size_t b = 0; b < batch; ++b) {

@@ -4,7 +4,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "motiongan/ops/elementwise.hpp"
+#include "motiongan/autograd/arithmetic.hpp"
 
 namespace motiongan {
 

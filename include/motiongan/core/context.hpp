@@ -25,19 +25,19 @@ struct ContextOptions {
 };
 
 /// A number in the Context's own type, as a kernel argument.
-struct Real {
+struct KernelReal {
   double value;
 };
 
 /// The grid of a launch. Local sizes are fixed per kernel: PoCL compiles a kernel anew for each one.
-struct Grid {
+struct LaunchGrid {
   cl_uint dimensions;
   std::array<std::size_t, 3> global, local;
 
   /// At least `n` work-items in one dimension, in groups of 64; kernels skip those past n.
-  static Grid items(std::size_t n) { return {1, {(n + 63) / 64 * 64, 1, 1}, {64, 1, 1}}; }
+  static LaunchGrid items(std::size_t n) { return {1, {(n + 63) / 64 * 64, 1, 1}, {64, 1, 1}}; }
   /// One work-item per group, for kernels that do a tile of work each.
-  static Grid groups(std::size_t x, std::size_t y = 1, std::size_t z = 1) {
+  static LaunchGrid groups(std::size_t x, std::size_t y = 1, std::size_t z = 1) {
     return {3, {x, y, z}, {1, 1, 1}};
   }
 };
@@ -61,7 +61,7 @@ struct KernelArguments {
   }
 };
 
-inline void add_argument(KernelArguments& to, Real real) {
+inline void add_argument(KernelArguments& to, KernelReal real) {
   if (to.precision == Precision::f64)
     to.set(static_cast<cl_double>(real.value));
   else
@@ -144,7 +144,8 @@ class Context {
         CL_CONTEXT_PLATFORM, reinterpret_cast<cl_context_properties>(s.device.platform), 0};
     s.context = ClContext(clCreateContext(properties, 1, &s.device.id, nullptr, nullptr, &code));
     check_cl(code, "clCreateContext", ": device ", s.device.name);
-    s.profiling = std::getenv("MOTIONGAN_PROFILE") != nullptr;
+    const char* profile = std::getenv("MOTIONGAN_PROFILE");
+    s.profiling = profile && std::strcmp(profile, "") != 0 && std::strcmp(profile, "0") != 0;
     s.queue = ClQueue(clCreateCommandQueue(s.context.get(), s.device.id,
                                            s.profiling ? CL_QUEUE_PROFILING_ENABLE : 0, &code));
     check_cl(code, "clCreateCommandQueue", ": device ", s.device.name);
@@ -192,9 +193,9 @@ class Context {
   void finish() const { check_cl(clFinish(queue()), "clFinish"); }
 
   /// Enqueues kernel `name` of cl/<file>.cl. Tensors become two arguments (buffer, first element),
-  /// std::size_t a cl_uint, Real a number of the context's type.
+  /// std::size_t a cl_uint, KernelReal a number of the context's type.
   template <class... Arguments>
-  void launch(const char* file, const char* name, const Grid& grid, const Arguments&... arguments) const {
+  void launch(const char* file, const char* name, const LaunchGrid& grid, const Arguments&... arguments) const {
     if (grid.global[0] == 0 || grid.global[1] == 0 || grid.global[2] == 0) return;
     detail::KernelArguments to{state_->programs->kernel(file, name), state_->precision, name};
     (add_argument(to, arguments), ...);
@@ -241,7 +242,7 @@ class Context {
   static std::string describe(const T& argument) {
     if constexpr (requires { argument.describe(); })
       return " " + argument.describe();
-    else if constexpr (std::is_same_v<T, Real>)
+    else if constexpr (std::is_same_v<T, KernelReal>)
       return concat(" ", argument.value);
     else
       return concat(" ", argument);

@@ -54,7 +54,7 @@ inline Tensor pack_b(const Context& context, const GemmCall& call,
   for (std::size_t s = 0; s < call.segments; ++s) {
     detail::check_matrix(call, "B", call.b, call.b_offset[s], call.b_transposed ? call.n : call.k,
                          call.b_transposed ? call.k : call.n, call.b_ld, 0);
-    context.launch("gemm_packed", "gemm_pack", Grid::groups(panels, (call.k + block - 1) / block),
+    context.launch("gemm_packed", "gemm_pack", LaunchGrid::groups(panels, (call.k + block - 1) / block),
                    detail::At{call.b, call.b_offset[s]}, call.b_transposed ? std::size_t{1} : call.b_ld,
                    call.b_transposed ? call.b_ld : std::size_t{1}, call.n, call.k,
                    detail::At{packed, s * size});
@@ -78,9 +78,9 @@ inline void gemm(const Context& context, const GemmCall& call, GemmEngine engine
     detail::gemm_clblast(context, call);
   if (call.rectified.empty() || (native && !call.b_panels.empty())) return;  // nothing left to do
   context.launch("elementwise", "leaky_relu",
-                 Grid::items((call.m * call.n + context.vector_width() - 1) / context.vector_width()),
+                 LaunchGrid::items((call.m * call.n + context.vector_width() - 1) / context.vector_width()),
                  detail::At{call.c, call.c_offset}, detail::At{call.rectified, call.rectified_offset},
-                 call.m * call.n, Real{0}, Real{0});
+                 call.m * call.n, KernelReal{0}, KernelReal{0});
 }
 
 }  // namespace motiongan

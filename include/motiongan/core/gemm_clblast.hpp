@@ -53,7 +53,7 @@ inline void gemm_clblast(const Context& context, const GemmCall& g) {
   }
   const cl_uint flags = gemm_flags(g) & ~gemm_accumulate;
   if (flags == 0) return;
-  Grid grid = Grid::items(g.m * g.n);
+  LaunchGrid grid = LaunchGrid::items(g.m * g.n);
   grid.dimensions = 2;
   grid.global[1] = g.batch;
   const auto present = [&](const Tensor& t) -> const Tensor& { return t.empty() ? g.c : t; };

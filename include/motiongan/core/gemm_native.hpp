@@ -89,7 +89,7 @@ inline void launch_gemm(const Context& context, const GemmCall& g) {
   to.rows_per_group = narrow(split.rows), to.panels_per_group = narrow(split.panels);
   to.panels_at_once = narrow(split.panels_at_once);
   const std::size_t columns = 2 * context.vector_width() * split.panels;
-  const Grid grid = Grid::groups((g.n + columns - 1) / columns, (g.m + split.rows - 1) / split.rows, g.batch);
+  const LaunchGrid grid = LaunchGrid::groups((g.n + columns - 1) / columns, (g.m + split.rows - 1) / split.rows, g.batch);
   if (!is_packed) {
     context.launch("gemm", "gemm", grid, buffer(g.a), buffer(g.b), g.c.buffer(), buffer(g.bias),
                    buffer(g.residual), to);
@@ -105,12 +105,12 @@ inline void launch_gemm(const Context& context, const GemmCall& g) {
 }
 
 /// out[j][i] = x[i][j]; both with rows of their own length.
-inline void launch_turn(const Context& context, const At& x, std::size_t ld, std::size_t rows,
+inline void launch_transpose(const Context& context, const At& x, std::size_t ld, std::size_t rows,
                         std::size_t columns, const At& out, std::size_t out_ld) {
   const auto pieces = [&](std::size_t n) {
     return (n + context.vector_width() - 1) / context.vector_width();
   };
-  context.launch("gemm", "gemm_turn", Grid::items(pieces(rows) * pieces(columns)), x, ld, rows, columns, out,
+  context.launch("gemm", "transpose", LaunchGrid::items(pieces(rows) * pieces(columns)), x, ld, rows, columns, out,
                  out_ld);
 }
 
@@ -135,10 +135,10 @@ inline void gemm_native(const Context& context, const GemmCall& wanted) {
     g.c_offset = 0;
     g.c_ld = g.n;
     launch_gemm(context, g);
-    return launch_turn(context, {g.c, 0}, g.n, g.m, g.n, {wanted.c, wanted.c_offset}, wanted.c_ld);
+    return launch_transpose(context, {g.c, 0}, g.n, g.m, g.n, {wanted.c, wanted.c_offset}, wanted.c_ld);
   }
   const Tensor turned(context, {g.m, g.k});
-  launch_turn(context, {g.a, g.a_offset[0]}, g.a_ld, g.k, g.m, {turned, 0}, g.k);
+  launch_transpose(context, {g.a, g.a_offset[0]}, g.a_ld, g.k, g.m, {turned, 0}, g.k);
   g.a = turned;
   g.a_offset[0] = 0;
   g.a_ld = g.k;

@@ -1,9 +1,10 @@
 // Compiling the embedded kernel files for one device, and finding kernels in them by name.
 #pragma once
+#include <algorithm>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <unordered_map>
-#include <vector>
 
 #include "motiongan/core/device.hpp"
 #include "motiongan/generated/kernels.hpp"
@@ -15,26 +16,27 @@ enum class Precision { f32, f64 };
 
 namespace detail {
 
-/// The text of cl/<name>.cl.
-inline const char* kernel_file(std::string_view name) {
-  if (name == "elementwise") return kernels::elementwise;
-  if (name == "reduce") return kernels::reduce;
-  if (name == "layout") return kernels::layout;
-  if (name == "gemm") return kernels::gemm;
-  if (name == "gemm_packed") return kernels::gemm_packed;
-  if (name == "softmax") return kernels::softmax;
-  if (name == "lstm") return kernels::lstm;
-  if (name == "gru") return kernels::gru;
-  if (name == "random") return kernels::random;
-  if (name == "adam") return kernels::adam;
-  if (name == "sgd") return kernels::sgd;
-  if (name == "search") return kernels::search;
-  throw Error("there is no kernel file cl/", name, ".cl");
-}
-
-/// What stands between prelude.cl and cl/<name>.cl; empty for most.
-inline const char* shared_part(std::string_view name) {
-  return name.starts_with("gemm") ? kernels::gemm_tiles : "";
+/// The text of cl/<name>.cl, with the files that it includes in place. #line directives make the compiler name
+/// the real files in its messages. Error where there is no such file.
+inline std::string kernel_source(std::string_view name) {
+  const auto found = std::find_if(std::begin(kernels::files), std::end(kernels::files),
+                                  [&](const kernels::File& file) { return name == file.name; });
+  require(found != std::end(kernels::files), "there is no kernel file cl/", name, ".cl");
+  std::string out = concat("#line 1 \"", name, ".cl\"\n");
+  std::string_view rest = found->text;
+  constexpr std::string_view directive = "#include \"", extension = ".cl\"";
+  for (std::size_t line = 1; !rest.empty(); ++line) {
+    const std::string_view text = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(rest.size(), text.size() + 1));
+    if (text.starts_with(directive) && text.ends_with(extension)) {
+      const std::size_t length = text.size() - directive.size() - extension.size();
+      out += kernel_source(text.substr(directive.size(), length));
+      out += concat("#line ", line + 1, " \"", name, ".cl\"\n");
+    } else {
+      out.append(text) += '\n';
+    }
+  }
+  return out;
 }
 
 /// Programs and kernels of one context, built when first asked for and kept.
@@ -63,10 +65,7 @@ class ProgramCache {
  private:
   cl_program program(const std::string& file) {
     if (const auto found = programs_.find(file); found != programs_.end()) return found->second.get();
-    // The #line directives make the compiler name the real files in its messages.
-    const std::string text =
-        concat("#line 1 \"prelude.cl\"\n", kernels::prelude, "\n#line 1 \"gemm_tiles.cl\"\n",
-               shared_part(file), "\n#line 1 \"", file, ".cl\"\n", kernel_file(file));
+    const std::string text = kernel_source("prelude") + kernel_source(file);
     const char* source = text.c_str();
     cl_int code = CL_SUCCESS;
     ClProgram program(clCreateProgramWithSource(context_, 1, &source, nullptr, &code));

@@ -28,31 +28,31 @@ inline PhiloxWords philox(PhiloxWords counter, std::uint64_t seed) {
 
 /// What a random number is for. Together with the seed, the training step, the sample and the position it
 /// names the number: nothing else influences it. Noise of the generator's level i is noise + i.
-enum class Stream : std::uint32_t {
+enum class RandomStream : std::uint32_t {
   weights = 1,
   windows = 2,
   captions = 3,
   cut = 4,
   shift = 5,
-  mix = 6,
+  interpolation = 6,
   seeding = 7,
   rollout = 8,
   noise = 32
 };
 
-inline Stream operator+(Stream stream, std::size_t level) {
-  return static_cast<Stream>(static_cast<std::uint32_t>(stream) + static_cast<std::uint32_t>(level));
+inline RandomStream operator+(RandomStream stream, std::size_t level) {
+  return static_cast<RandomStream>(static_cast<std::uint32_t>(stream) + static_cast<std::uint32_t>(level));
 }
 
 /// Names one array of random numbers: (seed, stream, step), and the number of its first sample.
 struct RandomKey {
   std::uint64_t seed = 0;
-  Stream stream = Stream::noise;
+  RandomStream stream = RandomStream::noise;
   std::uint32_t step = 0;  ///< at most 2^24 - 1; the stream fills the low 8 bits of the same word
   std::uint32_t first_sample = 0;
   std::int32_t first_frame = 0;
 
-  RandomKey with(Stream other) const {
+  RandomKey with(RandomStream other) const {
     RandomKey key = *this;
     key.stream = other;
     return key;
@@ -78,7 +78,7 @@ inline std::size_t random_below(const RandomKey& key, std::uint32_t sample, std:
 inline Tensor random_normal(const Context& context, const RandomKey& key, std::size_t frames,
                             std::size_t batch, std::size_t channels, const Indices& frame_of = {}) {
   Tensor out(context, {frames, batch, channels});
-  context.launch("random", "random_normal", Grid::items(frames * batch * ((channels + 63) / 64)), out, frames,
+  context.launch("random", "random_normal", LaunchGrid::items(frames * batch * ((channels + 63) / 64)), out, frames,
                  batch, channels, key.seed_low(), key.seed_high(), static_cast<cl_uint>(key.stream), key.step,
                  key.first_sample, key.first_frame,
                  frame_of.empty() ? static_cast<cl_mem>(nullptr) : frame_of.buffer());
@@ -88,19 +88,19 @@ inline Tensor random_normal(const Context& context, const RandomKey& key, std::s
 /// Fills `out` [frames, batch, channels] with the numbers that random_normal() makes for samples with keys of
 /// their own: `keys` holds for each (low word of the seed, high word, sample, first frame), row t is frame
 /// first_frame + t counted from there.
-inline void fill_normal_each(const Tensor& out, Stream stream, std::int32_t first_frame,
+inline void fill_normal_each(const Tensor& out, RandomStream stream, std::int32_t first_frame,
                              const Indices& keys) {
   const std::size_t frames = out.dim(0), batch = out.dim(1), channels = out.dim(2);
   require(keys.size() >= 4 * batch, "fill_normal_each: ", keys.size(), " numbers of keys for ", batch,
           " samples, 4 each");
-  out.context().launch("random", "random_normal_each", Grid::items(frames * batch * ((channels + 63) / 64)),
+  out.context().launch("random", "random_normal_each", LaunchGrid::items(frames * batch * ((channels + 63) / 64)),
                        out, frames, batch, channels, static_cast<cl_uint>(stream), first_frame, keys);
 }
 
 /// One uniform number of (0, 1) per sample, [batch].
 inline Tensor random_uniform(const Context& context, const RandomKey& key, std::size_t batch) {
   Tensor out(context, {batch});
-  context.launch("random", "random_uniform", Grid::items(batch), out, batch, key.seed_low(), key.seed_high(),
+  context.launch("random", "random_uniform", LaunchGrid::items(batch), out, batch, key.seed_low(), key.seed_high(),
                  static_cast<cl_uint>(key.stream), key.step, key.first_sample);
   return out;
 }
@@ -109,7 +109,7 @@ inline Tensor random_uniform(const Context& context, const RandomKey& key, std::
 inline Indices random_integers(const Context& context, const RandomKey& key, std::size_t batch, int low,
                                std::size_t count) {
   Indices out(context, batch);
-  context.launch("random", "random_integers", Grid::items(batch), out, batch, static_cast<cl_int>(low), count,
+  context.launch("random", "random_integers", LaunchGrid::items(batch), out, batch, static_cast<cl_int>(low), count,
                  key.seed_low(), key.seed_high(), static_cast<cl_uint>(key.stream), key.step,
                  key.first_sample);
   return out;

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <utility>
 
-#include "../core/error.hpp"
+#include "motiongan/core/error.hpp"
 
 namespace motiongan::io {
 

@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-#include "../core/error.hpp"
+#include "motiongan/core/error.hpp"
 #include "atomic_file.hpp"
 #include "safetensors_header.hpp"
 

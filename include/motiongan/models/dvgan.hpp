@@ -5,25 +5,25 @@
 #include <optional>
 #include <variant>
 
-#include "motiongan/io/motion_format_json.hpp"
-#include "motiongan/io/state_dict.hpp"
-#include "motiongan/models/cnn_generator.hpp"
-#include "motiongan/models/rnn_stream.hpp"
+#include "motiongan/data/motion_format_json.hpp"
+#include "motiongan/nn/state_dict.hpp"
+#include "motiongan/networks/cnn_generator.hpp"
+#include "motiongan/networks/rnn_stream.hpp"
 
 namespace motiongan {
 
 /// Which network makes the motion: the CNN makes a window of N frames at once, coarse to fine; the RNN goes
 /// on frame by frame, for as long as one likes, and can continue a given motion.
-enum class Generator { cnn, rnn };
+enum class GeneratorKind { cnn, rnn };
 
 struct DvganOptions {
-  Generator generator = Generator::cnn;
+  GeneratorKind generator = GeneratorKind::cnn;
   std::size_t hidden = 256;            ///< k
   std::size_t taps = 3;                ///< of the CNN's convolutions: 3 or 5
   std::optional<bool> final_cut = {};  ///< make 2N frames, keep N; not set: on for the CNN, off for the RNN
   std::uint64_t seed = 1;              ///< of the first weights
 
-  bool cuts() const { return final_cut.value_or(generator == Generator::cnn); }
+  bool cuts() const { return final_cut.value_or(generator == GeneratorKind::cnn); }
 };
 
 struct GenerateOptions {
@@ -47,7 +47,7 @@ class Dvgan {
   const motion::MotionFormat& format() const { return format_; }
   const DvganOptions& options() const { return options_; }
 
-  bool is_recurrent() const { return options_.generator == Generator::rnn; }
+  bool is_recurrent() const { return options_.generator == GeneratorKind::rnn; }
   const CnnGenerator& cnn() const {
     require(!is_recurrent(), "this model has an RNN generator, a CNN generator was asked for");
     return std::get<CnnGenerator>(generator_);
@@ -167,9 +167,9 @@ class Dvgan {
     try {
       const auto options = nlohmann::json::parse(file.metadata.at("options"));
       DvganOptions read;
-      read.generator = found->second == rnn_name ? Generator::rnn : Generator::cnn;
+      read.generator = found->second == rnn_name ? GeneratorKind::rnn : GeneratorKind::cnn;
       read.hidden = options.at("hidden").get<std::size_t>();
-      if (read.generator == Generator::cnn) read.taps = options.at("taps").get<std::size_t>();
+      if (read.generator == GeneratorKind::cnn) read.taps = options.at("taps").get<std::size_t>();
       read.final_cut = options.at("final_cut").get<bool>();
       require(read.hidden > 0 && read.hidden <= 65536 && (read.taps == 3 || read.taps == 5), "hidden ",
               read.hidden, " or taps ", read.taps, " is out of range");
@@ -190,7 +190,7 @@ class Dvgan {
   static Network make_generator(const Context& context, const motion::MotionFormat& format,
                                 const DvganOptions& options) {
     const Initializer init(context, options.seed);
-    if (options.generator == Generator::rnn)
+    if (options.generator == GeneratorKind::rnn)
       return RnnGenerator(init, {.vocabulary = format.vocabulary.size(),
                                  .dof = format.dof(),
                                  .frames = format.frames,

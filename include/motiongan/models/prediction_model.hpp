@@ -5,11 +5,11 @@
 #include <variant>
 
 #include "motiongan/io/safetensors.hpp"
-#include "motiongan/io/state_dict.hpp"
-#include "motiongan/models/erd.hpp"
-#include "motiongan/models/lstm_3lr.hpp"
-#include "motiongan/models/lstm_baseline.hpp"
-#include "motiongan/models/seq2seq.hpp"
+#include "motiongan/nn/state_dict.hpp"
+#include "motiongan/networks/erd.hpp"
+#include "motiongan/networks/lstm_3lr.hpp"
+#include "motiongan/networks/lstm_baseline.hpp"
+#include "motiongan/networks/seq2seq.hpp"
 #include "motiongan/ops/cross_entropy.hpp"
 
 namespace motiongan {

@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <variant>
 
-#include "motiongan/io/motion_format_json.hpp"
-#include "motiongan/io/state_dict.hpp"
-#include "motiongan/models/rnn_ranker.hpp"
+#include "motiongan/data/motion_format_json.hpp"
+#include "motiongan/nn/state_dict.hpp"
+#include "motiongan/networks/rnn_ranker.hpp"
 
 namespace motiongan {
 

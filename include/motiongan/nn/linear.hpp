@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "motiongan/nn/module.hpp"
-#include "motiongan/ops/taps.hpp"
+#include "motiongan/ops/conv1d.hpp"
 
 namespace motiongan {
 
@@ -32,13 +32,13 @@ struct Conv1d {
   }
 
   /// conv(x) + residual, then ReLU if asked.
-  Var operator()(const Var& x, const TapsExtras& extras = {}) const {
-    return taps(x, weight, offsets(), x.dim(0), false,
+  Var operator()(const Var& x, const Conv1dEpilogue& extras = {}) const {
+    return conv1d(x, weight, offsets(), x.dim(0), false,
                 {.bias = bias, .residual = extras.residual, .relu = extras.relu});
   }
 
   void list_parameters(ParameterList& list) {
-    list.add("weight", weight, Layout::convolution);
+    list.add("weight", weight, ParameterLayout::convolution);
     list.add("bias", bias);
   }
 };
@@ -47,10 +47,10 @@ struct Conv1d {
 /// outputs is the convolution of the means of neighbouring inputs. `pairs` is pair_means(x) of a motion of
 /// `frames` frames; a residual and ReLU follow if asked.
 inline Var conv_down(const Var& pairs, const Var& weight, const Var& bias, std::size_t frames,
-                     const TapsExtras& extras = {}) {
+                     const Conv1dEpilogue& extras = {}) {
   require(weight.dim(0) == 3, "conv_down: 3 taps expected, ", weight.dim(0), " found");
   const int half = static_cast<int>(frames / 2);
-  return taps(pairs, weight, {0, half + 1, 1}, frames / 2, false,
+  return conv1d(pairs, weight, {0, half + 1, 1}, frames / 2, false,
               {.bias = bias, .residual = extras.residual, .relu = extras.relu});
 }
 
@@ -66,8 +66,7 @@ struct Linear {
   }
 
   Var operator()(const Var& x, bool with_relu = false) const {
-    const Var w = reshape(weight, {1, weight.dim(0), weight.dim(1)});
-    return taps(x, w, {0}, x.dim(0), false, {.bias = bias, .relu = with_relu});
+    return linear(x, weight, {.bias = bias, .relu = with_relu});
   }
 
   void list_parameters(ParameterList& list) {

@@ -16,6 +16,11 @@ struct Embedding {
   void list_parameters(ParameterList& list) { list.add("weight", weight); }
 };
 
+/// h and c of every layer after a run, [B, k] each.
+struct LstmState {
+  std::vector<Var> h, c;
+};
+
 /// Layers of LSTM, gate order i, f, g, o; every weight U(+-1/sqrt(k)).
 struct Lstm {
   struct Layer {
@@ -35,19 +40,32 @@ struct Lstm {
 
   std::size_t hidden() const { return layers.at(0).weight_hh.dim(1); }
 
-  /// All states of every layer, each [2, T, B, k] (h, then c), from zero states. x is [T, B, in]; lengths as
-  /// lstm_layer.
-  std::vector<Var> operator()(const Var& x, const Indices& lengths = {}) const {
+  /// All states of every layer, each [2, T, B, k] (h, then c). x is [T, B, in]; layers go on from `state`
+  /// (empty: from zeros), lengths as lstm_layer.
+  std::vector<Var> operator()(const Var& x, const Indices& lengths = {}, const LstmState& state = {}) const {
     std::vector<Var> states;
     Var input = x;
-    for (const Layer& layer : layers) {
-      const Var first = zeros(x.context(), {x.dim(1), hidden()});
-      const Var w = reshape(layer.weight_ih, {1, layer.weight_ih.dim(0), layer.weight_ih.dim(1)});
-      const Var gates = taps(input, w, {0}, input.dim(0), false, {.bias = layer.bias_ih + layer.bias_hh});
-      states.push_back(lstm_layer(gates, layer.weight_hh, first, first, lengths));
-      if (states.size() < layers.size()) input = hidden_states(states.back());
+    for (std::size_t l = 0; l < layers.size(); ++l) {
+      const Layer& layer = layers[l];
+      const Var zero = state.h.empty() ? zeros(x.context(), {x.dim(1), hidden()}) : Var();
+      const Var gates = linear(input, layer.weight_ih, {.bias = layer.bias_ih + layer.bias_hh});
+      states.push_back(lstm_layer(gates, layer.weight_hh, state.h.empty() ? zero : state.h[l],
+                                  state.c.empty() ? zero : state.c[l], lengths));
+      if (l + 1 < layers.size()) input = hidden_states(states.back());
     }
     return states;
+  }
+
+  /// h of the last layer, [T, B, k], of layers that go on from `state` (empty: from zeros), which becomes the
+  /// state after the last frame.
+  Var advance(const Var& x, LstmState& state) const {
+    const std::vector<Var> states = (*this)(x, {}, state);
+    state = {};
+    for (const Var& of_layer : states) {
+      state.h.push_back(last_state(of_layer, 0));
+      state.c.push_back(last_state(of_layer, 1));
+    }
+    return hidden_states(states.back());
   }
 
   void list_parameters(ParameterList& list) {

@@ -10,7 +10,7 @@
 namespace motiongan {
 
 /// How a parameter is kept on the device and how it is written to files.
-enum class Layout {
+enum class ParameterLayout {
   plain,       ///< as PyTorch has it
   convolution  ///< [taps, out, in] on the device (each tap is one matrix), [out, in, taps] in files
 };
@@ -18,7 +18,7 @@ enum class Layout {
 struct NamedParameter {
   std::string name;
   Var* value = nullptr;
-  Layout layout = Layout::plain;
+  ParameterLayout layout = ParameterLayout::plain;
 };
 
 /// Makes parameters with random first values. They are numbered in the order in which they are made, and the
@@ -32,7 +32,7 @@ class Initializer {
   /// Uniform in [-bound, bound].
   Var uniform(Shape shape, double bound) {
     std::vector<float> values(element_count(shape));
-    const RandomKey key{.seed = seed_, .stream = Stream::weights, .step = ++count_};
+    const RandomKey key{.seed = seed_, .stream = RandomStream::weights, .step = ++count_};
     for (std::size_t i = 0; i < values.size(); ++i)
       values[i] = static_cast<float>(
           bound * (2 * (random_word(key, 0, static_cast<std::uint32_t>(i)) + 0.5) * 0x1p-32 - 1));
@@ -41,12 +41,12 @@ class Initializer {
 
   /// N(0, 1).
   Var normal(std::size_t rows, std::size_t columns) {
-    return Var::leaf(random_normal(context_, {.seed = seed_, .stream = Stream::weights, .step = ++count_}, 1,
+    return Var::leaf(random_normal(context_, {.seed = seed_, .stream = RandomStream::weights, .step = ++count_}, 1,
                                    rows, columns)
                          .reshape({rows, columns}));
   }
 
-  Var constant(Shape shape, double value) { return Var::leaf(filled(context_, std::move(shape), value)); }
+  Var constant(Shape shape, double value) { return Var::leaf(full(context_, std::move(shape), value)); }
 
  private:
   Context context_;
@@ -57,7 +57,7 @@ class Initializer {
 /// A list of parameters under construction; modules add theirs under a prefix.
 class ParameterList {
  public:
-  void add(const std::string& name, Var& value, Layout layout = Layout::plain) {
+  void add(const std::string& name, Var& value, ParameterLayout layout = ParameterLayout::plain) {
     items_.push_back({name, &value, layout});
   }
 

@@ -28,14 +28,14 @@ struct SelfAttention {
 
   /// [T, B, C] -> [T, B, C].
   Var operator()(const Var& x) const {
-    const std::size_t frames = x.dim(0), inner = query.out_channels(), channels = x.dim(2);
+    const std::size_t inner = query.out_channels(), channels = x.dim(2);
     // One product for all three; gamma goes into the weights of the last, which are fewer than activations.
-    const Var all = taps(x, concat_axis({query.weight, key.weight, value.weight}, 1), {0}, frames, false,
-                         {.bias = concat_axis({query.bias, key.bias, value.bias}, 0)});
+    const Var all = linear(x, concatenate({query.weight, key.weight, value.weight}, 1),
+                           {.bias = concatenate({query.bias, key.bias, value.bias}, 0)});
     const auto part = [&](std::size_t i) { return slice(all, 2, i * inner, inner); };
-    const Var mixed = mix_frames(attention_map(part(0), part(1)), part(2));
-    return taps(mixed, out.weight * expand_scalar(gamma, out.weight.shape()), {0}, frames, false,
-                {.bias = out.bias * expand_scalar(gamma, {channels}), .residual = x});
+    const Var mixed = attention_apply(attention_map(part(0), part(1)), part(2));
+    return linear(mixed, out.weight * broadcast_to(gamma, out.weight.shape()),
+                  {.bias = out.bias * broadcast_to(gamma, {channels}), .residual = x});
   }
 
   void list_parameters(ParameterList& list) {

@@ -51,7 +51,7 @@ struct TextEncoder {
     std::vector<Var> last;
     for (std::size_t kind : {0, 1})
       for (const Var& layer : states) last.push_back(last_state(layer, kind));
-    return proj(concat_axis(last, 1));
+    return proj(concatenate(last, 1));
   }
 
   void list_parameters(ParameterList& list) {

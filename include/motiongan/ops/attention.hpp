@@ -10,12 +10,12 @@
 
 namespace motiongan {
 
-inline Var mix_frames(const Var& map, const Var& x, bool transposed = false);
+inline Var attention_apply(const Var& map, const Var& x, bool transposed = false);
 
 /// map[b, j, i] = a_j . c_i of sample b: [J, B, C], [I, B, C] -> [B, J, I].
-inline Var frame_products(const Var& a, const Var& c) {
+inline Var attention_scores(const Var& a, const Var& c) {
   require(a.value().rank() == 3 && c.value().rank() == 3 && a.dim(1) == c.dim(1) && a.dim(2) == c.dim(2),
-          "frame_products: shapes ", a.shape(), " and ", c.shape());
+          "attention_scores: shapes ", a.shape(), " and ", c.shape());
   const std::size_t rows = a.dim(0), columns = c.dim(0), batch = a.dim(1), channels = a.dim(2);
   GemmCall call{.m = rows, .n = columns, .k = channels, .a = a.value(), .b = c.value()};
   call.c = Tensor(a.context(), {batch, rows, columns});
@@ -24,19 +24,19 @@ inline Var frame_products(const Var& a, const Var& c) {
   call.a_batch_stride = call.b_batch_stride = channels, call.c_batch_stride = rows * columns;
   call.b_transposed = true;
   gemm(a.context(), call);
-  return record("frame_products", {a, c}, call.c,
+  return record("attention_scores", {a, c}, call.c,
                 [](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
-                  return {needs[0] ? mix_frames(g, self.inputs[1]) : Var(),
-                          needs[1] ? mix_frames(g, self.inputs[0], true) : Var()};
+                  return {needs[0] ? attention_apply(g, self.inputs[1]) : Var(),
+                          needs[1] ? attention_apply(g, self.inputs[0], true) : Var()};
                 });
 }
 
 /// out_j = sum over i of map[b, j, i] x_i for every sample b: [B, J, I], [I, B, C] -> [J, B, C]. `transposed`
 /// takes map[b, i, j], of shape [B, I, J], instead.
-inline Var mix_frames(const Var& map, const Var& x, bool transposed) {
+inline Var attention_apply(const Var& map, const Var& x, bool transposed) {
   require(map.value().rank() == 3 && x.value().rank() == 3 && map.dim(0) == x.dim(1) &&
               map.dim(transposed ? 1 : 2) == x.dim(0),
-          "mix_frames: a map ", map.shape(), transposed ? " (transposed)" : "", " over frames ", x.shape());
+          "attention_apply: a map ", map.shape(), transposed ? " (transposed)" : "", " over frames ", x.shape());
   const std::size_t rows = map.dim(transposed ? 2 : 1), inner = x.dim(0), batch = x.dim(1),
                     channels = x.dim(2);
   GemmCall call{.m = rows, .n = channels, .k = inner, .a = map.value(), .b = x.value()};
@@ -46,17 +46,17 @@ inline Var mix_frames(const Var& map, const Var& x, bool transposed) {
   call.a_batch_stride = rows * inner, call.b_batch_stride = call.c_batch_stride = channels;
   call.a_transposed = transposed;
   gemm(x.context(), call);
-  return record("mix_frames", {map, x}, call.c,
+  return record("attention_apply", {map, x}, call.c,
                 [transposed](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
                   const Var &m = self.inputs[0], &frames = self.inputs[1];
                   Var by_map;
-                  if (needs[0]) by_map = transposed ? frame_products(frames, g) : frame_products(g, frames);
-                  return {by_map, needs[1] ? mix_frames(m, g, !transposed) : Var()};
+                  if (needs[0]) by_map = transposed ? attention_scores(frames, g) : attention_scores(g, frames);
+                  return {by_map, needs[1] ? attention_apply(m, g, !transposed) : Var()};
                 });
 }
 
 /// The attention map beta (eq. 1, 2): map[b, j, i] = softmax over i of query_i . key_j, how much frame j
 /// takes from frame i; every row sums to 1. [I, B, R], [J, B, R] -> [B, J, I].
-inline Var attention_map(const Var& query, const Var& key) { return softmax(frame_products(key, query)); }
+inline Var attention_map(const Var& query, const Var& key) { return softmax(attention_scores(key, query)); }
 
 }  // namespace motiongan

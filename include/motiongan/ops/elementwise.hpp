@@ -1,64 +1,8 @@
-// Functions number by number, with their derivatives.
+// Elementwise operations, with their derivatives.
 #pragma once
-#include "motiongan/autograd/var.hpp"
+#include "motiongan/autograd/arithmetic.hpp"
 
 namespace motiongan {
-
-namespace detail {
-
-inline Grid vector_grid(const Tensor& t) {
-  return Grid::items((t.size() + t.context().vector_width() - 1) / t.context().vector_width());
-}
-
-inline Tensor unary(const char* kernel, const Tensor& x, double a = 0, double b = 0) {
-  Tensor out(x.context(), x.shape());
-  x.context().launch("elementwise", kernel, vector_grid(x), x, out, x.size(), Real{a}, Real{b});
-  return out;
-}
-
-inline Tensor binary(const char* kernel, const Tensor& x, const Tensor& y, double a = 0, double b = 0) {
-  require(x.shape() == y.shape(), kernel, ": shapes differ, ", x.shape(), " and ", y.shape());
-  Tensor out(x.context(), x.shape());
-  x.context().launch("elementwise", kernel, vector_grid(x), x, y, out, x.size(), Real{a}, Real{b});
-  return out;
-}
-
-}  // namespace detail
-
-/// A tensor filled with one value.
-inline Tensor filled(const Context& context, Shape shape, double value) {
-  Tensor out(context, std::move(shape));
-  context.launch("elementwise", "fill", detail::vector_grid(out), out, out.size(), Real{value});
-  return out;
-}
-inline Var zeros(const Context& context, Shape shape) {
-  return Var::constant(filled(context, std::move(shape), 0));
-}
-inline Var ones(const Context& context, Shape shape) {
-  return Var::constant(filled(context, std::move(shape), 1));
-}
-
-/// a*x + b
-inline Var affine(const Var& x, double a, double b = 0) {
-  return record("affine", {x}, detail::unary("affine", x.value(), a, b),
-                [a](const Node&, const Var& g, const Needs&) -> std::vector<Var> { return {affine(g, a)}; });
-}
-
-/// a*x + b*y
-inline Var weighted_sum(const Var& x, double a, const Var& y, double b) {
-  return record("weighted_sum", {x, y}, detail::binary("axpby", x.value(), y.value(), a, b),
-                [a, b](const Node&, const Var& g, const Needs& needs) -> std::vector<Var> {
-                  return {needs[0] ? (a == 1 ? g : affine(g, a)) : Var(),
-                          needs[1] ? (b == 1 ? g : affine(g, b)) : Var()};
-                });
-}
-
-inline Var operator+(const Var& x, const Var& y) { return weighted_sum(x, 1, y, 1); }
-inline Var operator-(const Var& x, const Var& y) { return weighted_sum(x, 1, y, -1); }
-inline Var operator-(const Var& x) { return affine(x, -1); }
-inline Var operator*(double a, const Var& x) { return affine(x, a); }
-inline Var operator+(const Var& x, double b) { return affine(x, 1, b); }
-inline Var operator-(const Var& x, double b) { return affine(x, 1, -b); }
 
 inline Var operator*(const Var& x, const Var& y) {
   return record("product", {x, y}, detail::binary("product", x.value(), y.value()),

@@ -4,7 +4,7 @@
 // steps see what is given; the last of them and all after it make a pose, a = a_before + h' Wd^T + bd, which
 // the next step sees.
 #pragma once
-#include "motiongan/ops/composed.hpp"
+#include "motiongan/ops/fused.hpp"
 #include "motiongan/ops/matmul.hpp"
 
 namespace motiongan {
@@ -20,17 +20,12 @@ struct GruRolloutWeights {
 
 namespace detail {
 
-/// One vector, [n], for each of `rows` rows: [rows, n].
-inline Var repeat_rows(const Var& x, std::size_t rows) {
-  return expand(x, 1, rows, x.size(), 1, {rows, x.size()});
-}
-
 /// gru_rollout out of elementary operations; every derivative exists.
 inline Var gru_rollout_composed(const Var& x_gates, const Var& each, const Var& last,
                                 const GruRolloutWeights& w, std::size_t frames) {
   const std::size_t given = x_gates.dim(0), batch = x_gates.dim(1), k = w.recurrent.dim(1),
                     dof = w.diff.dim(0);
-  const Var h_bias = repeat_rows(w.recurrent_bias, batch), pose_bias = repeat_rows(w.diff_bias, batch);
+  const Var h_bias = broadcast_to(w.recurrent_bias, {batch, 3 * k}), pose_bias = broadcast_to(w.diff_bias, {batch, dof});
   Var h = zeros(x_gates.context(), {batch, k}), a = last;
   std::vector<Var> motion;
   for (std::size_t t = 0; t + 1 < given + frames; ++t) {
@@ -45,7 +40,7 @@ inline Var gru_rollout_composed(const Var& x_gates, const Var& each, const Var& 
     a = a + matmul(h, w.diff, false, true) + pose_bias;
     motion.push_back(reshape(a, {1, batch, dof}));
   }
-  return concat_axis(motion, 0);
+  return concatenate(motion, 0);
 }
 
 /// What the forward pass leaves for the derivative. S = n - 1 + frames steps.
@@ -59,7 +54,7 @@ struct GruTrace {
   std::size_t state_at(std::size_t t) const { return t * batch * k; }
   std::size_t gates_at(std::size_t t) const { return t * batch * 3 * k; }
   std::size_t pose_at(std::size_t j) const { return j * batch * dof; }
-  Grid cells() const { return Grid::items(batch * vectors(states.context(), k)); }
+  LaunchGrid cells() const { return LaunchGrid::items(batch * vectors(states.context(), k)); }
 };
 
 /// A product of rows with W^T, or with W, W [out, in]; places and what is added are yet to be named.
@@ -79,7 +74,7 @@ inline GruTrace gru_rollout_forward(const Tensor& x_gates, const Tensor& each, c
   t.kept = Tensor(context, {keep ? t.steps() : 1, t.batch, 4 * t.k});
   t.poses = Tensor(context, {frames + 1, t.batch, t.dof});
   const Tensor first = t.states.view(0, {t.batch, t.k});
-  context.launch("elementwise", "fill", vector_grid(first), first, first.size(), Real{0});
+  context.launch("elementwise", "fill", vector_grid(first), first, first.size(), KernelReal{0});
   copy_tensor(last, t.poses.view(0, last.shape()));
   const Tensor s(context, {t.batch, 3 * t.k}), x(context, {t.batch, 3 * t.k});
   GemmCall recur = product_with(w.recurrent.value(), true, t.batch),
@@ -111,12 +106,12 @@ inline GruTrace gru_rollout_forward(const Tensor& x_gates, const Tensor& each, c
 
 /// Gradients by x_gates, each, last, W_h, b_h, the pose's weights, Wd and bd of a rollout whose motion has
 /// gradient g [frames, B, M].
-inline std::vector<Var> gru_rollout_backward(const GruTrace& t, const Node& self, const Tensor& g,
+inline std::vector<Tensor> gru_rollout_backward(const GruTrace& t, const Node& self, const Tensor& g,
                                              const Needs& needs) {
   const Context& context = g.context();
   const std::size_t steps = t.steps(), own = t.frames - 1;  // steps that see a pose that was made
   const Tensor poses(context, g.shape()), dx(context, {steps, t.batch, 3 * t.k}), ds(context, dx.shape()),
-      dh = filled(context, {t.batch, t.k}, 0);
+      dh = full(context, {t.batch, t.k}, 0);
   copy_tensor(g, poses);  // becomes the whole gradients
   GemmCall recur = product_with(self.inputs[3].value(), false, t.batch),
            see = product_with(self.inputs[5].value(), false, t.batch),
@@ -152,17 +147,17 @@ inline std::vector<Var> gru_rollout_backward(const GruTrace& t, const Node& self
     call.a_offset[0] = first, call.b_offset[0] = first_row;
     if (count == 0) call.a_offset[0] = call.b_offset[0] = 0;
     gemm(context, call);
-    return Var::constant(call.c);
+    return call.c;
   };
   const auto sum_of = [&](const Tensor& rows, std::size_t n) {
-    return Var::constant(sum_middle_value(rows, 1, rows.size() / n, n, 1, {n}));
+    return sum_axis_value(rows, 1, rows.size() / n, n, 1, {n});
   };
-  std::vector<Var> found(8);
-  if (needs[0]) found[0] = Var::constant(dx.view(0, {t.given, t.batch, 3 * t.k}));
+  std::vector<Tensor> found(8);
+  if (needs[0]) found[0] = dx.view(0, {t.given, t.batch, 3 * t.k});
   if (needs[1] && own > 0)
-    found[1] = Var::constant(sum_middle_value(dx.view(t.gates_at(t.given), {own, t.batch, 3 * t.k}), 1, own,
-                                              t.batch * 3 * t.k, 1, {t.batch, 3 * t.k}));
-  if (needs[2]) found[2] = Var::constant(poses.view(0, {t.batch, t.dof}));
+    found[1] = sum_axis_value(dx.view(t.gates_at(t.given), {own, t.batch, 3 * t.k}), 1, own, t.batch * 3 * t.k,
+                              1, {t.batch, 3 * t.k});
+  if (needs[2]) found[2] = poses.view(0, {t.batch, t.dof});
   if (needs[3]) found[3] = by_weight(ds, 0, t.states, 0, steps);
   if (needs[4]) found[4] = sum_of(ds, 3 * t.k);
   if (needs[5]) found[5] = by_weight(dx, t.gates_at(t.given), t.poses, t.pose_at(1), own);
@@ -188,17 +183,15 @@ inline Var gru_rollout(const Var& x_gates, const Var& each, const Var& last, con
           " frames");
   const detail::GruTrace trace = detail::gru_rollout_forward(x_gates.value(), each.value(), last.value(), w,
                                                              frames, detail::recording());
-  return record("gru_rollout",
-                {x_gates, each, last, w.recurrent, w.recurrent_bias, w.pose, w.diff, w.diff_bias},
-                trace.poses.view(trace.pose_at(1), {frames, batch, dof}),
-                [trace](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
-                  if (!detail::recording())
-                    return detail::gru_rollout_backward(trace, self, g.value(), needs);
-                  return detail::partial_derivatives(self.inputs, g, needs, [&](const std::vector<Var>& in) {
-                    return detail::gru_rollout_composed(in[0], in[1], in[2],
-                                                        {in[3], in[4], in[5], in[6], in[7]}, trace.frames);
-                  });
-                });
+  return detail::fused(
+      "gru_rollout", {x_gates, each, last, w.recurrent, w.recurrent_bias, w.pose, w.diff, w.diff_bias},
+      trace.poses.view(trace.pose_at(1), {frames, batch, dof}),
+      [trace](const Node& self, const Tensor& g, const Needs& needs) {
+        return detail::gru_rollout_backward(trace, self, g, needs);
+      },
+      [frames](const std::vector<Var>& in) {
+        return detail::gru_rollout_composed(in[0], in[1], in[2], {in[3], in[4], in[5], in[6], in[7]}, frames);
+      });
 }
 
 }  // namespace motiongan

@@ -26,7 +26,7 @@ struct AxisView {
 inline void copy_runs(const Tensor& x, std::size_t x_first, std::size_t x_stride, const Tensor& out,
                       std::size_t out_first, std::size_t out_stride, std::size_t outer, std::size_t run) {
   const Context& context = x.context();
-  context.launch("layout", "copy_runs", Grid::items(outer * vectors(context, run)),
+  context.launch("layout", "copy_runs", LaunchGrid::items(outer * vectors(context, run)),
                  x.view(x_first, {x.size() - x_first}), x_stride,
                  out.view(out_first, {out.size() - out_first}), out_stride, outer, run);
 }
@@ -67,7 +67,7 @@ inline Var pad(const Var& x, std::size_t axis, std::size_t before, std::size_t a
   shape[axis] += before + after;
   const std::size_t run = view.count * view.inner, out_run = shape[axis] * view.inner;
   Tensor value(x.context(), shape);
-  x.context().launch("layout", "pad_runs", Grid::items(view.outer * detail::vectors(x.context(), out_run)),
+  x.context().launch("layout", "pad_runs", LaunchGrid::items(view.outer * detail::vectors(x.context(), out_run)),
                      x.value(), value, view.outer, run, out_run, before * view.inner);
   return record("pad", {x}, std::move(value),
                 [=, count = view.count](const Node&, const Var& g, const Needs&) -> std::vector<Var> {
@@ -76,16 +76,16 @@ inline Var pad(const Var& x, std::size_t axis, std::size_t before, std::size_t a
 }
 
 /// Joins tensors along an axis; their other sizes are equal.
-inline Var concat_axis(const std::vector<Var>& parts, std::size_t axis) {
-  require(!parts.empty(), "concat_axis: nothing to join");
+inline Var concatenate(const std::vector<Var>& parts, std::size_t axis) {
+  require(!parts.empty(), "concatenate: nothing to join");
   Shape shape = parts[0].shape();
   shape.at(axis) = 0;
   for (const Var& part : parts) {
     Shape rest = part.shape();
-    require(rest.size() == shape.size(), "concat_axis: ranks differ");
+    require(rest.size() == shape.size(), "concatenate: ranks differ");
     shape[axis] += rest[axis];
     rest[axis] = shape[axis];
-    require(rest == shape, "concat_axis: ", part.shape(), " does not fit the others along axis ", axis);
+    require(rest == shape, "concatenate: ", part.shape(), " does not fit the others along axis ", axis);
   }
   Tensor value(parts[0].context(), shape);
   std::size_t first = 0;
@@ -125,9 +125,9 @@ inline Var shift_frames(const Var& x, const Indices& offset, std::size_t frames_
   const std::size_t frames_in = x.dim(0), batch = x.dim(1), channels = x.dim(2);
   Tensor value(x.context(), {frames_out, batch, channels});
   x.context().launch("layout", "shift_frames",
-                     Grid::items(frames_out * batch * detail::vectors(x.context(), channels)), x.value(),
+                     LaunchGrid::items(frames_out * batch * detail::vectors(x.context(), channels)), x.value(),
                      offset, value, frames_in, frames_out, batch, channels, static_cast<cl_int>(shift.first),
-                     static_cast<cl_int>(shift.sign), Real{shift.outside});
+                     static_cast<cl_int>(shift.sign), KernelReal{shift.outside});
   return record("shift_frames", {x}, std::move(value),
                 [=](const Node&, const Var& g, const Needs&) -> std::vector<Var> {
                   return {shift_frames(g, offset, frames_in, {.first = -shift.first, .sign = -shift.sign})};
@@ -144,7 +144,7 @@ inline Var pair_means(const Var& x) {
   Shape shape = x.shape();
   shape[0] = 2 * (frames / 2) + 1;
   Tensor value(x.context(), shape);
-  x.context().launch("layout", "pair_means", Grid::items(shape[0] * detail::vectors(x.context(), slab)),
+  x.context().launch("layout", "pair_means", LaunchGrid::items(shape[0] * detail::vectors(x.context(), slab)),
                      x.value(), value, frames, slab);
   return record("pair_means", {x}, std::move(value),
                 [frames](const Node&, const Var& g, const Needs&) -> std::vector<Var> {
@@ -157,7 +157,7 @@ inline Var pair_means_adjoint(const Var& g, std::size_t frames) {
   const std::size_t slab = g.size() / shape[0];
   shape[0] = frames;
   Tensor value(g.context(), shape);
-  g.context().launch("layout", "pair_means_adjoint", Grid::items(frames * detail::vectors(g.context(), slab)),
+  g.context().launch("layout", "pair_means_adjoint", LaunchGrid::items(frames * detail::vectors(g.context(), slab)),
                      g.value(), value, frames, slab);
   return record("pair_means_adjoint", {g}, std::move(value),
                 [](const Node&, const Var& u, const Needs&) -> std::vector<Var> { return {pair_means(u)}; });
@@ -170,7 +170,7 @@ inline Var gather_rows(const Var& table, const Indices& index) {
   const std::size_t rows = table.dim(0), channels = table.dim(1);
   Tensor value(table.context(), {index.size(), channels});
   table.context().launch("layout", "gather_rows",
-                         Grid::items(index.size() * detail::vectors(table.context(), channels)),
+                         LaunchGrid::items(index.size() * detail::vectors(table.context(), channels)),
                          table.value(), index, value, index.size(), channels);
   return record("gather_rows", {table}, std::move(value),
                 [=](const Node&, const Var& g, const Needs&) -> std::vector<Var> {
@@ -182,7 +182,7 @@ inline Var gather_rows(const Var& table, const Indices& index) {
 inline Var scatter_add_rows(const Var& x, const Indices& index, std::size_t rows) {
   const std::size_t channels = x.dim(1);
   Tensor value(x.context(), {rows, channels});
-  x.context().launch("layout", "scatter_add_rows", Grid::items(rows * detail::vectors(x.context(), channels)),
+  x.context().launch("layout", "scatter_add_rows", LaunchGrid::items(rows * detail::vectors(x.context(), channels)),
                      x.value(), index, value, x.dim(0), rows, channels);
   return record(
       "scatter_add_rows", {x}, std::move(value),

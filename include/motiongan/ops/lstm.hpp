@@ -1,10 +1,9 @@
 // One LSTM layer over time: fused for values, first derivatives and the second derivative that a gradient
 // penalty takes; composed of elementary operations for all other and higher ones.
 #pragma once
-#include "motiongan/ops/composed.hpp"
+#include "motiongan/ops/fused.hpp"
 #include "motiongan/ops/lstm_sweeps.hpp"
 #include "motiongan/ops/matmul.hpp"
-#include "motiongan/ops/taps.hpp"
 
 namespace motiongan {
 
@@ -48,30 +47,27 @@ inline Var lstm_layer_composed(const Var& x_gates, const Var& w_hh, const Var& h
     all_h.push_back(reshape(h, {1, 1, batch, k}));
     all_c.push_back(reshape(c, {1, 1, batch, k}));
   }
-  return concat_axis({concat_axis(all_h, 1), concat_axis(all_c, 1)}, 0);
+  return concatenate({concatenate(all_h, 1), concatenate(all_c, 1)}, 0);
 }
 
 /// The gradient of lstm_layer by its gates, [T, B, 4k], as an operation of its own: this is what a gradient
 /// penalty differentiates once more. First states are constant, every sample runs to T. Its own first
 /// derivative is fused, higher ones are composed.
-inline Var lstm_layer_slope(const Var& g, const Var& x_gates, const Var& w_hh, const LstmPass& pass,
+inline Var lstm_layer_grad(const Var& g, const Var& x_gates, const Var& w_hh, const LstmPass& pass,
                             bool only_h) {
   const LstmGradients first = lstm_backward(pass, g.value(), {.keep_totals = true});
-  return record(
-      "lstm_layer_slope", {g, x_gates, w_hh}, first.gates,
-      [pass, only_h, totals = first.totals](const Node& self, const Var& u,
-                                            const Needs& needs) -> std::vector<Var> {
-        if (recording())
-          return partial_derivatives(self.inputs, u, needs, [&](const std::vector<Var>& v) {
-            const Var states =
-                lstm_layer_composed(v[1], v[2], Var::constant(pass.h_first), Var::constant(pass.c_first), {});
-            return grad({only_h ? hidden_states(states) : states}, {v[0]}, {v[1]}, {.create_graph = true})[0];
-          });
-        const LstmSlopeGradients found =
-            lstm_slope_gradients(pass, self.value, totals, u.value(), needs[1], needs[2]);
-        return {
-            Var::constant(only_h ? found.g.view(0, {pass.frames(), pass.batch(), pass.hidden()}) : found.g),
-            needs[1] ? Var::constant(found.gates) : Var(), needs[2] ? Var::constant(found.w_hh) : Var()};
+  return fused(
+      "lstm_layer_grad", {g, x_gates, w_hh}, first.gates,
+      [pass, only_h, totals = first.totals](const Node& self, const Tensor& u, const Needs& needs) {
+        const LstmDoubleBackward found = lstm_double_backward(pass, self.value, totals, u, needs[1], needs[2]);
+        return std::vector<Tensor>{
+            only_h ? found.g.view(0, {pass.frames(), pass.batch(), pass.hidden()}) : found.g,
+            needs[1] ? found.gates : Tensor(), needs[2] ? found.w_hh : Tensor()};
+      },
+      [pass, only_h](const std::vector<Var>& v) {
+        const Var states =
+            lstm_layer_composed(v[1], v[2], Var::constant(pass.h_first), Var::constant(pass.c_first), {});
+        return grad({only_h ? hidden_states(states) : states}, {v[0]}, {v[1]}, {.create_graph = true})[0];
       });
 }
 
@@ -84,28 +80,28 @@ inline Var lstm_layer_fused(const Var& x_gates, const Var& w_hh, const Var& h_fi
           h_first.shape());
   const LstmPass pass =
       lstm_forward(x_gates.value(), w_hh.value(), h_first.value(), c_first.value(), lengths);
-  return record("lstm_layer", {x_gates, w_hh, h_first, c_first},
-                only_h ? pass.states.view(0, {x_gates.dim(0), batch, k}) : pass.states,
-                [pass, only_h](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
-                  const auto& in = self.inputs;
-                  if (!recording()) {
-                    const LstmGradients found = lstm_backward(pass, g.value(), {.h_first = needs[2]});
-                    return {Var::constant(found.gates),
-                            needs[1]
-                                ? Var::constant(weight_gradient(pass, found.gates, pass.states, pass.h_first))
-                                : Var(),
-                            needs[2] ? Var::constant(found.h_first) : Var(),
-                            needs[3] ? Var::constant(found.c_first) : Var()};
-                  }
-                  // A higher derivative is asked. By the gates alone (a gradient penalty) it is fused.
-                  if (needs == Needs{true, false, false, false} && pass.lengths.empty() &&
-                      !in[2].requires_grad() && !in[3].requires_grad())
-                    return {lstm_layer_slope(g, in[0], in[1], pass, only_h), {}, {}, {}};
-                  return partial_derivatives(in, g, needs, [&](const std::vector<Var>& v) {
-                    const Var states = lstm_layer_composed(v[0], v[1], v[2], v[3], pass.lengths);
-                    return only_h ? hidden_states(states) : states;
-                  });
-                });
+  return fused(
+      "lstm_layer", {x_gates, w_hh, h_first, c_first},
+      only_h ? pass.states.view(0, {x_gates.dim(0), batch, k}) : pass.states,
+      [pass](const Node&, const Tensor& g, const Needs& needs) {
+        const LstmGradients found = lstm_backward(pass, g, {.h_first = needs[2]});
+        return std::vector<Tensor>{
+            found.gates,
+            needs[1] ? weight_gradient(pass, found.gates, pass.states, pass.h_first) : Tensor(),
+            needs[2] ? found.h_first : Tensor(), needs[3] ? found.c_first : Tensor()};
+      },
+      [pass, only_h](const std::vector<Var>& v) {
+        const Var states = lstm_layer_composed(v[0], v[1], v[2], v[3], pass.lengths);
+        return only_h ? hidden_states(states) : states;
+      },
+      [pass, only_h](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
+        // With respect to the gates alone (a gradient penalty), the second derivative is fused as well.
+        const auto& in = self.inputs;
+        if (needs != Needs{true, false, false, false} || !pass.lengths.empty() || in[2].requires_grad() ||
+            in[3].requires_grad())
+          return {};
+        return {lstm_layer_grad(g, in[0], in[1], pass, only_h), {}, {}, {}};
+      });
 }
 
 }  // namespace detail

@@ -29,7 +29,7 @@ class LstmStepper {
     const std::size_t panels = 2 * vectors(context, k_), columns = 2 * context.vector_width();
     packed_ = Tensor(context, {panels, in_, columns});
     context.launch("gemm_packed", "gemm_pack_gates",
-                   Grid::groups(panels, (in_ + gemm_block(context) - 1) / gemm_block(context)), weight, in_,
+                   LaunchGrid::groups(panels, (in_ + gemm_block(context) - 1) / gemm_block(context)), weight, in_,
                    k_, packed_);
   }
 
@@ -41,7 +41,7 @@ class LstmStepper {
       const std::size_t row_groups = std::max<std::size_t>(1, wanted / units), tile = 6;
       const std::size_t rows = ((s.batch + row_groups - 1) / row_groups + tile - 1) / tile * tile;
       context.count_gemm_flops(2.0 * static_cast<double>(s.batch * 4 * k_ * in_));
-      context.launch("gemm_packed", "gemm_lstm_cell", Grid::groups(units, (s.batch + rows - 1) / rows),
+      context.launch("gemm_packed", "gemm_lstm_cell", LaunchGrid::groups(units, (s.batch + rows - 1) / rows),
                      s.rows, s.width, in_, packed_, s.extra, extra_row, s.c_before, s.h, s.width, s.c,
                      s.gates, static_cast<cl_uint>(s.keep_gates), s.batch, k_, rows);
       return;
@@ -54,7 +54,7 @@ class LstmStepper {
     else
       call.residual = s.extra.tensor, call.residual_offset = s.extra.first, call.residual_ld = 4 * k_;
     gemm(context, call);
-    context.launch("lstm", "lstm_cell", Grid::items(s.batch * vectors(context, k_)), s.gates, s.c_before, s.h,
+    context.launch("lstm", "lstm_cell", LaunchGrid::items(s.batch * vectors(context, k_)), s.gates, s.c_before, s.h,
                    static_cast<cl_mem>(nullptr), std::size_t{0}, s.h, s.width, s.c, s.batch, k_);
   }
 

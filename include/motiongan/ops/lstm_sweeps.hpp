@@ -33,7 +33,7 @@ struct LstmPass {
   std::size_t batch() const { return states.dim(2); }
   std::size_t hidden() const { return states.dim(3); }
   std::size_t slab() const { return batch() * hidden(); }
-  Grid grid() const { return Grid::items(batch() * vectors(context(), hidden())); }
+  LaunchGrid grid() const { return LaunchGrid::items(batch() * vectors(context(), hidden())); }
 
   /// Step t of something shaped as the gates, [B, 4k].
   Tensor gates_at(const Tensor& all, std::size_t t) const {
@@ -181,20 +181,20 @@ inline LstmGradients lstm_backward(const LstmPass& pass, const Tensor& g, const 
   return out;
 }
 
-struct LstmSlopeGradients {
+struct LstmDoubleBackward {
   Tensor g;      // [2, T, B, k]
   Tensor gates;  // of x_gates, [T, B, 4k]; absent unless asked
   Tensor w_hh;   // [4k, k]; absent unless asked
 };
 
-/// Gradients of <u, slope> by g, x_gates and w_hh, where slope(g, x_gates, w_hh) [T, B, 4k] is `gates` of
+/// Gradients of <u, gradient> by g, x_gates and w_hh, where gradient(g, x_gates, w_hh) [T, B, 4k] is `gates` of
 /// lstm_backward, and `totals` what that kept; first states are constant, no lengths.
-inline LstmSlopeGradients lstm_slope_gradients(const LstmPass& pass, const Tensor& slope,
+inline LstmDoubleBackward lstm_double_backward(const LstmPass& pass, const Tensor& gradient,
                                                const Tensor& totals, const Tensor& u, bool of_gates,
                                                bool of_w_hh) {
   const Context& context = pass.context();
   const std::size_t frames = pass.frames(), batch = pass.batch(), k = pass.hidden();
-  LstmSlopeGradients out{.g = Tensor(context, {2, frames, batch, k}), .gates = {}, .w_hh = {}};
+  LstmDoubleBackward out{.g = Tensor(context, {2, frames, batch, k}), .gates = {}, .w_hh = {}};
   const Tensor gates(context, {frames, batch, 4 * k}), direct(context, {frames, batch, k});
   GemmCall onward = recurrence(pass, u, gates);
   for (std::size_t t = 0; t < frames; ++t) {
@@ -202,7 +202,7 @@ inline LstmSlopeGradients lstm_slope_gradients(const LstmPass& pass, const Tenso
     if (t > 0) run_step(pass, onward, pass.state_at(out.g, t - 1), t);
     const Tensor c_before = t > 0 ? pass.state_at(out.g, t - 1, 1) : Tensor(),
                  direct_before = t > 0 ? pass.state_at(direct, t - 1) : Tensor();
-    context.launch("lstm", "lstm_slope_forward", pass.grid(), t > 0 ? now : pass.gates_at(u, t),
+    context.launch("lstm", "lstm_grad_forward", pass.grid(), t > 0 ? now : pass.gates_at(u, t),
                    pass.gates_at(pass.gates, t), pass.c_at(t), pass.c_before(t), pass.state_at(totals, t),
                    pass.state_at(totals, t, 1), Maybe<Tensor>{c_before}, Maybe<Tensor>{direct_before},
                    pass.state_at(out.g, t), pass.state_at(out.g, t, 1), now, pass.state_at(direct, t), batch,
@@ -213,7 +213,7 @@ inline LstmSlopeGradients lstm_slope_gradients(const LstmPass& pass, const Tenso
   GemmCall back = recurrence_gradient(pass, h_carry, false);
   for (std::size_t t = frames; t-- > 0;) {
     const Tensor now = pass.gates_at(gates, t);
-    context.launch("lstm", "lstm_slope_backward", pass.grid(), pass.gates_at(pass.gates, t), pass.c_at(t),
+    context.launch("lstm", "lstm_grad_backward", pass.grid(), pass.gates_at(pass.gates, t), pass.c_at(t),
                    pass.c_before(t), pass.state_at(direct, t), Maybe<Tensor>{t + 1 < frames ? h_carry : none},
                    c_carry, now, batch, k);
     if (t > 0) run_step(pass, back, now);
@@ -221,8 +221,8 @@ inline LstmSlopeGradients lstm_slope_gradients(const LstmPass& pass, const Tenso
   out.gates = gates;
   if (of_w_hh) {
     const Var of_activations = Var::constant(weight_gradient(pass, gates, pass.states, pass.h_first)),
-              of_slope = Var::constant(weight_gradient(pass, slope, out.g, {}));
-    out.w_hh = (of_activations + of_slope).value();
+              of_gradient = Var::constant(weight_gradient(pass, gradient, out.g, {}));
+    out.w_hh = (of_activations + of_gradient).value();
   }
   return out;
 }

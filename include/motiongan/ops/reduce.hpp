@@ -1,4 +1,5 @@
-// Sums over an axis and their adjoint, the expansion along one. Both see a tensor as [outer, count, inner].
+// Sums over an axis and their adjoint, broadcasting along one; what is made of them: means, pooling, softmax.
+// Inside, a tensor is seen as [outer, count, inner] around the axis.
 #pragma once
 #include "motiongan/ops/elementwise.hpp"
 
@@ -11,12 +12,12 @@ inline std::size_t vectors(const Context& context, std::size_t n) {
 }
 
 /// [outer, count, inner] -> [outer, inner], times scale.
-inline Tensor sum_middle_value(const Tensor& x, std::size_t outer, std::size_t count, std::size_t inner,
+inline Tensor sum_axis_value(const Tensor& x, std::size_t outer, std::size_t count, std::size_t inner,
                                double scale, Shape shape) {
   const Context& context = x.context();
   Tensor out(context, std::move(shape));
   if (inner == 1 && count > 1) {
-    context.launch("reduce", "sum_rows", Grid::items(outer), x, out, outer, count, Real{scale});
+    context.launch("reduce", "sum_rows", LaunchGrid::items(outer), x, out, outer, count, KernelReal{scale});
     return out;
   }
   // Long sums over few columns go in two stages, so that there is work for every core; the order stays fixed.
@@ -25,121 +26,138 @@ inline Tensor sum_middle_value(const Tensor& x, std::size_t outer, std::size_t c
   if (count > 2 * piece && outer * columns < enough_items) {
     const std::size_t pieces = (count + piece - 1) / piece;
     const Tensor partial(context, {outer, pieces, inner});
-    context.launch("reduce", "sum_middle", Grid::items(outer * pieces * columns), x, partial, outer, count,
-                   inner, piece, Real{1});
-    context.launch("reduce", "sum_middle", Grid::items(outer * columns), partial, out, outer, pieces, inner,
-                   pieces, Real{scale});
+    context.launch("reduce", "sum_axis", LaunchGrid::items(outer * pieces * columns), x, partial, outer, count,
+                   inner, piece, KernelReal{1});
+    context.launch("reduce", "sum_axis", LaunchGrid::items(outer * columns), partial, out, outer, pieces, inner,
+                   pieces, KernelReal{scale});
   } else {
-    context.launch("reduce", "sum_middle", Grid::items(outer * columns), x, out, outer, count, inner, count,
-                   Real{scale});
+    context.launch("reduce", "sum_axis", LaunchGrid::items(outer * columns), x, out, outer, count, inner, count,
+                   KernelReal{scale});
   }
   return out;
 }
 
-inline Tensor expand_value(const Tensor& x, std::size_t outer, std::size_t count, std::size_t inner,
+inline Tensor broadcast_axis_value(const Tensor& x, std::size_t outer, std::size_t count, std::size_t inner,
                            double scale, Shape shape) {
   const Context& context = x.context();
   Tensor out(context, std::move(shape));
   if (inner == 1)
-    context.launch("reduce", "expand_rows", Grid::items(outer * vectors(context, count)), x, out, outer,
-                   count, Real{scale});
+    context.launch("reduce", "broadcast_rows", LaunchGrid::items(outer * vectors(context, count)), x, out, outer,
+                   count, KernelReal{scale});
   else
-    context.launch("reduce", "expand", Grid::items(outer * count * vectors(context, inner)), x, out, outer,
-                   count, inner, Real{scale});
+    context.launch("reduce", "broadcast_axis", LaunchGrid::items(outer * count * vectors(context, inner)), x, out, outer,
+                   count, inner, KernelReal{scale});
   return out;
 }
 
-}  // namespace detail
-
-inline Var expand(const Var& x, std::size_t outer, std::size_t count, std::size_t inner, double scale,
-                  Shape shape);
+inline Var broadcast_axis(const Var& x, std::size_t outer, std::size_t count, std::size_t inner, double scale,
+                          Shape shape);
 
 /// scale * sum over the middle axis of x seen as [outer, count, inner]; the result has `shape` (outer*inner
 /// numbers).
-inline Var sum_middle(const Var& x, std::size_t outer, std::size_t count, std::size_t inner, double scale,
-                      Shape shape) {
-  require(x.size() == outer * count * inner && element_count(shape) == outer * inner,
-          "sum_middle: ", x.shape(), " is not ", outer, " x ", count, " x ", inner, ", or does not give ",
-          shape);
-  Tensor value = detail::sum_middle_value(x.value(), outer, count, inner, scale, std::move(shape));
-  return record("sum_middle", {x}, std::move(value),
+inline Var sum_axis(const Var& x, std::size_t outer, std::size_t count, std::size_t inner, double scale,
+                    Shape shape) {
+  require(x.size() == outer * count * inner && element_count(shape) == outer * inner, "sum_axis: ", x.shape(),
+          " is not ", outer, " x ", count, " x ", inner, ", or does not give ", shape);
+  Tensor value = sum_axis_value(x.value(), outer, count, inner, scale, std::move(shape));
+  return record("sum", {x}, std::move(value),
                 [=](const Node& self, const Var& g, const Needs&) -> std::vector<Var> {
-                  return {expand(g, outer, count, inner, scale, self.inputs[0].shape())};
+                  return {broadcast_axis(g, outer, count, inner, scale, self.inputs[0].shape())};
                 });
 }
 
 /// scale * x repeated along a new middle axis: x is seen as [outer, inner], the result, of `shape`, as
 /// [outer, count, inner].
-inline Var expand(const Var& x, std::size_t outer, std::size_t count, std::size_t inner, double scale,
-                  Shape shape) {
-  require(x.size() == outer * inner && element_count(shape) == outer * count * inner, "expand: ", x.shape(),
-          " is not ", outer, " x ", inner, ", or does not give ", shape);
-  Tensor value = detail::expand_value(x.value(), outer, count, inner, scale, std::move(shape));
-  return record("expand", {x}, std::move(value),
+inline Var broadcast_axis(const Var& x, std::size_t outer, std::size_t count, std::size_t inner, double scale,
+                          Shape shape) {
+  require(x.size() == outer * inner && element_count(shape) == outer * count * inner, "broadcast_axis: ",
+          x.shape(), " is not ", outer, " x ", inner, ", or does not give ", shape);
+  Tensor value = broadcast_axis_value(x.value(), outer, count, inner, scale, std::move(shape));
+  return record("broadcast", {x}, std::move(value),
                 [=](const Node& self, const Var& g, const Needs&) -> std::vector<Var> {
-                  return {sum_middle(g, outer, count, inner, scale, self.inputs[0].shape())};
+                  return {sum_axis(g, outer, count, inner, scale, self.inputs[0].shape())};
                 });
 }
 
+}  // namespace detail
+
 /// Sum of all numbers, [1].
-inline Var sum(const Var& x) { return sum_middle(x, 1, x.size(), 1, 1, {1}); }
+inline Var sum(const Var& x) { return detail::sum_axis(x, 1, x.size(), 1, 1, {1}); }
 /// Mean of all numbers, [1].
 inline Var mean(const Var& x) {
-  return sum_middle(x, 1, x.size(), 1, 1.0 / static_cast<double>(x.size()), {1});
+  return detail::sum_axis(x, 1, x.size(), 1, 1.0 / static_cast<double>(x.size()), {1});
 }
 
-/// Sum over the last axis: [..., n] -> [...].
-inline Var sum_last(const Var& x) {
+/// scale * sum over one axis, which is removed: [2, 3, 5] over axis 1 -> [2, 5]. A negative axis counts from
+/// the last, -1.
+inline Var sum(const Var& x, int axis, double scale = 1) {
+  const auto rank = static_cast<int>(x.value().rank());
+  require(axis >= -rank && axis < rank, "sum: axis ", axis, " of ", x.shape(), ", expected ", -rank, " to ",
+          rank - 1);
+  const auto at = static_cast<std::size_t>(axis < 0 ? axis + rank : axis);
   Shape shape = x.shape();
-  const std::size_t n = shape.back();
-  shape.pop_back();
-  return sum_middle(x, x.size() / n, n, 1, 1, shape);
+  std::size_t outer = 1, inner = 1;
+  for (std::size_t i = 0; i < shape.size(); ++i)
+    if (i != at) (i < at ? outer : inner) *= shape[i];
+  const std::size_t count = shape[at];
+  shape.erase(shape.begin() + static_cast<std::ptrdiff_t>(at));
+  return detail::sum_axis(x, outer, count, inner, scale, std::move(shape));
 }
 
-/// Mean over frames: [T, B, C] -> [B, C].
-inline Var mean_frames(const Var& x) {
-  const std::size_t frames = x.dim(0);
-  return sum_middle(x, 1, frames, x.size() / frames, 1.0 / static_cast<double>(frames), {x.dim(1), x.dim(2)});
+/// Mean over one axis, which is removed.
+inline Var mean(const Var& x, int axis) {
+  const auto rank = static_cast<int>(x.value().rank());
+  const auto at = static_cast<std::size_t>(axis < 0 ? axis + rank : axis);
+  return sum(x, axis, 1.0 / static_cast<double>(x.dim(at)));
 }
 
 /// Sum over frames and channels: [T, B, C] -> [B].
-inline Var sum_per_sample(const Var& x) {
-  return sum_last(sum_middle(x, 1, x.dim(0), x.dim(1) * x.dim(2), 1, {x.dim(1), x.dim(2)}));
+inline Var sum_per_sample(const Var& x) { return sum(sum(x, 0), -1); }
+
+/// x repeated to `shape` by the rules of NumPy and PyTorch: shapes are compared from the last axis, missing
+/// axes and those of size 1 are repeated. [B, 1] -> [T, B, C].
+inline Var broadcast_to(const Var& x, const Shape& shape) {
+  const Shape& from = x.shape();
+  require(from.size() <= shape.size(), "broadcast_to: ", from, " has more axes than ", shape);
+  Shape at(shape.size() - from.size(), 1);
+  at.insert(at.end(), from.begin(), from.end());
+  for (std::size_t i = 0; i < shape.size(); ++i)
+    require(at[i] == shape[i] || at[i] == 1, "broadcast_to: ", from, " does not broadcast to ", shape);
+  Var y = x;
+  for (std::size_t last = shape.size(); last-- > 0;) {
+    if (at[last] == shape[last]) continue;
+    std::size_t first = last;  // neighbouring axes of size 1 are repeated in one pass
+    while (first > 0 && at[first - 1] == 1) --first;
+    std::size_t outer = 1, count = 1, inner = 1;
+    for (std::size_t i = 0; i < first; ++i) outer *= at[i];
+    for (std::size_t i = last + 1; i < at.size(); ++i) inner *= at[i];
+    for (std::size_t i = first; i <= last; ++i) count *= at[i] = shape[i];
+    y = detail::broadcast_axis(y, outer, count, inner, 1, at);
+    last = first;
+  }
+  return y;
 }
 
-/// One number per sample, [B], repeated over frames and channels: [T, B, C].
-inline Var expand_samples(const Var& x, std::size_t frames, std::size_t channels) {
-  const std::size_t batch = x.size();
-  return expand(expand(x, batch, channels, 1, 1, {batch, channels}), 1, frames, batch * channels, 1,
-                {frames, batch, channels});
-}
-
-/// A scalar, [1], repeated over `shape`.
-inline Var expand_scalar(const Var& x, Shape shape) {
-  const std::size_t n = element_count(shape);
-  return expand(x, 1, n, 1, 1, std::move(shape));
-}
-
-/// Nearest-neighbour repetition along the first axis, `Up` of SPEC 0 for times = 2: [T, ...] -> [times*T,
+/// Nearest-neighbour upsampling along the first axis (DVGAN's `Up` for times = 2): [T, ...] -> [times*T,
 /// ...].
-inline Var repeat_frames(const Var& x, std::size_t times, double scale = 1) {
+inline Var upsample_nearest(const Var& x, std::size_t times, double scale = 1) {
   Shape shape = x.shape();
   shape[0] *= times;
-  return expand(x, x.dim(0), times, x.size() / x.dim(0), scale, std::move(shape));
+  return detail::broadcast_axis(x, x.dim(0), times, x.size() / x.dim(0), scale, std::move(shape));
 }
 
-/// Sums of `times` neighbouring frames: [times*T, ...] -> [T, ...]; `Down` of SPEC 0 for times = 2, scale =
-/// 1/2.
-inline Var sum_frames(const Var& x, std::size_t times, double scale = 1) {
+/// scale * sums of `times` neighbouring frames: [times*T, ...] -> [T, ...]. With times = 2 and scale = 1/2
+/// this is average pooling, DVGAN's `Down`.
+inline Var sum_pool(const Var& x, std::size_t times, double scale = 1) {
   Shape shape = x.shape();
   shape[0] /= times;
-  return sum_middle(x, shape[0], times, x.size() / x.dim(0), scale, shape);
+  return detail::sum_axis(x, shape[0], times, x.size() / x.dim(0), scale, shape);
 }
 
 /// Rows of length 1, x / |x|: [rows, n] -> [rows, n]; a row of zeros stays one.
 inline Var normalize_rows(const Var& x) {
   const std::size_t rows = x.dim(0), n = x.dim(1);
-  return x / expand(sqrt(sum_last(square(x)) + 1e-24), rows, n, 1, 1, {rows, n});
+  return x / detail::broadcast_axis(sqrt(sum(square(x), -1) + 1e-24), rows, n, 1, 1, {rows, n});
 }
 
 /// relu(big + small repeated): big is [count*T, ...], small [T, ...]. One pass instead of three.
@@ -149,13 +167,13 @@ inline Var relu_of_sum(const Var& big, const Var& small) {
   const std::size_t outer = small.dim(0), count = big.dim(0) / outer, inner = small.size() / outer;
   const Context& context = big.context();
   Tensor value(context, big.shape());
-  context.launch("elementwise", "add_expand_relu",
-                 Grid::items(outer * count * detail::vectors(context, inner)), big.value(), small.value(),
+  context.launch("elementwise", "add_broadcast_relu",
+                 LaunchGrid::items(outer * count * detail::vectors(context, inner)), big.value(), small.value(),
                  value, outer, count, inner);
   return record("relu_of_sum", {big, small}, std::move(value),
                 [count](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
                   const Var masked = detail::leaky_relu_grad(g, self.value, 0);
-                  return {masked, needs[1] ? (count == 1 ? masked : sum_frames(masked, count)) : Var()};
+                  return {masked, needs[1] ? (count == 1 ? masked : sum_pool(masked, count)) : Var()};
                 });
 }
 
@@ -163,11 +181,11 @@ inline Var relu_of_sum(const Var& big, const Var& small) {
 inline Var softmax(const Var& x) {
   const std::size_t n = x.shape().back(), rows = x.size() / n;
   Tensor value(x.context(), x.shape());
-  x.context().launch("softmax", "softmax_rows", Grid::items(rows), x.value(), value, rows, n);
+  x.context().launch("softmax", "softmax_rows", LaunchGrid::items(rows), x.value(), value, rows, n);
   return record("softmax", {x}, std::move(value),
                 [=](const Node& self, const Var& g, const Needs&) -> std::vector<Var> {
                   const Var y = detail::itself(self);
-                  return {y * (g - expand(sum_last(g * y), rows, n, 1, 1, self.value.shape()))};
+                  return {y * (g - detail::broadcast_axis(sum(g * y, -1), rows, n, 1, 1, self.value.shape()))};
                 });
 }
 
@@ -175,11 +193,11 @@ inline Var softmax(const Var& x) {
 inline Var log_softmax(const Var& x) {
   const std::size_t n = x.shape().back(), rows = x.size() / n;
   Tensor value(x.context(), x.shape());
-  x.context().launch("softmax", "log_softmax_rows", Grid::items(rows), x.value(), value, rows, n);
+  x.context().launch("softmax", "log_softmax_rows", LaunchGrid::items(rows), x.value(), value, rows, n);
   return record("log_softmax", {x}, std::move(value),
                 [=](const Node& self, const Var& g, const Needs&) -> std::vector<Var> {
                   const Var p = exp(detail::itself(self));
-                  return {g - p * expand(sum_last(g), rows, n, 1, 1, self.value.shape())};
+                  return {g - p * detail::broadcast_axis(sum(g, -1), rows, n, 1, 1, self.value.shape())};
                 });
 }
 

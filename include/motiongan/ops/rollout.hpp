@@ -8,7 +8,7 @@
 // The rows of a step are kept as [a_t | h0_t | h1_{t-1}], so that what either layer sees is one piece of a
 // row and each takes one matrix product.
 #pragma once
-#include "motiongan/ops/composed.hpp"
+#include "motiongan/ops/fused.hpp"
 #include "motiongan/ops/lstm_step.hpp"
 #include "motiongan/ops/matmul.hpp"
 
@@ -36,7 +36,7 @@ struct RolloutShape {
   std::size_t h1_at(std::size_t t) const { return (t + 1) * slab() + dof + k; }
   std::size_t state_at(std::size_t t) const { return t * batch * k; }
   std::size_t gates_at(std::size_t t) const { return (t - 1) * batch * 4 * k; }  // from step 1 on
-  Grid cells(const Context& context) const { return Grid::items(batch * vectors(context, k)); }
+  LaunchGrid cells(const Context& context) const { return LaunchGrid::items(batch * vectors(context, k)); }
 };
 
 /// What the forward pass keeps: rows [N + 1, B, M + 2k], activated gates [N - 1, B, 4k] and cell states
@@ -67,7 +67,7 @@ inline RolloutTrace rollout_forward(const Tensor& given, const Tensor& x_gates, 
                      Tensor(context, {frames, batch, k}),
                      Tensor(context, {frames, batch, k})};
   const auto clear = [&](const Tensor& t) {
-    context.launch("elementwise", "fill", vector_grid(t), t, t.size(), Real{0});
+    context.launch("elementwise", "fill", vector_grid(t), t, t.size(), KernelReal{0});
   };
   clear(trace.rows.view(0, {2 * s.slab()}));  // the states before the first step
   clear(trace.c0.view(0, {batch * k}));
@@ -110,16 +110,16 @@ inline RolloutTrace rollout_forward(const Tensor& given, const Tensor& x_gates, 
 }
 
 /// Gradients by given, x_gates, W0, W1, b1, Wd, bd of a rollout whose motion has gradient g [N, B, M].
-inline std::vector<Var> rollout_backward(const RolloutTrace& trace, const Node& self, const Tensor& g,
+inline std::vector<Tensor> rollout_backward(const RolloutTrace& trace, const Node& self, const Tensor& g,
                                          const Needs& needs) {
   const Context& context = g.context();
   const RolloutShape& s = trace.shape;
   const std::size_t k = s.k, batch = s.batch, frames = s.frames;
   // Gradients of the rows, gathered from the steps that read them.
-  const Tensor rows = filled(context, trace.rows.shape(), 0);
+  const Tensor rows = full(context, trace.rows.shape(), 0);
   copy_runs(g, 0, s.dof, rows, 0, s.width(), frames * batch, s.dof);
   const Tensor gates0(context, trace.gates0.shape()), gates1(context, trace.gates1.shape()),
-      dc0 = filled(context, {batch, k}, 0), dc1 = filled(context, {batch, k}, 0);
+      dc0 = full(context, {batch, k}, 0), dc1 = full(context, {batch, k}, 0);
   GemmCall move{.m = batch, .n = k, .k = s.dof}, second{.m = batch, .n = 2 * k, .k = 4 * k},
       first{.m = batch, .n = s.dof + k, .k = 4 * k};
   for (GemmCall* call : {&move, &second, &first}) {
@@ -144,7 +144,7 @@ inline std::vector<Var> rollout_backward(const RolloutTrace& trace, const Node& 
       move.a_offset[0] = s.pose_at(t);
       move.c_offset = s.h1_at(t);
       gemm(context, move);
-      context.launch("layout", "add_rows", Grid::items(batch * vectors(context, s.dof)),
+      context.launch("layout", "add_rows", LaunchGrid::items(batch * vectors(context, s.dof)),
                      At{rows, s.pose_at(t)}, s.width(), At{rows, s.pose_at(t - 1)}, s.width(), batch, s.dof);
     }
     cell(trace.gates1, trace.c1, s.h1_at(t), dc1, gates1, t);
@@ -164,24 +164,24 @@ inline std::vector<Var> rollout_backward(const RolloutTrace& trace, const Node& 
     call.b = trace.rows, call.b_offset[0] = seen, call.b_ld = s.width();
     call.c = Tensor(context, {m, n}), call.c_ld = n;
     gemm(context, call);
-    return Var::constant(call.c);
+    return call.c;
   };
   const std::size_t free_steps = frames > s.given ? frames - s.given : 0;
-  std::vector<Var> out(7);
+  std::vector<Tensor> out(7);
   const auto poses = [&](std::size_t t, std::size_t count) {  // gradients of a_t .. as [count, B, M]
     Tensor part(context, {count, batch, s.dof});
     copy_runs(rows, s.pose_at(t), s.width(), part, 0, s.dof, count * batch, s.dof);
-    return Var::constant(part);
+    return part;
   };
   if (needs[0]) out[0] = poses(0, s.given);
-  if (needs[1]) out[1] = Var::constant(gates0);
+  if (needs[1]) out[1] = gates0;
   if (needs[2]) out[2] = by_weight(gates0, 0, 4 * k, s.pose_at(0), 4 * k, s.dof + k, frames - 1);
   if (needs[3]) out[3] = by_weight(gates1, 0, 4 * k, s.h0_at(1), 4 * k, 2 * k, frames - 1);
-  if (needs[4]) out[4] = sum_middle(Var::constant(gates1), 1, (frames - 1) * batch, 4 * k, 1, {4 * k});
+  if (needs[4]) out[4] = sum_axis_value(gates1, 1, (frames - 1) * batch, 4 * k, 1, {4 * k});
   if (needs[5] && free_steps > 0)
     out[5] = by_weight(rows, s.pose_at(s.given), s.width(), s.h1_at(s.given), s.dof, k, free_steps);
   if (needs[6] && free_steps > 0)
-    out[6] = sum_middle(poses(s.given, free_steps), 1, free_steps * batch, s.dof, 1, {s.dof});
+    out[6] = sum_axis_value(poses(s.given, free_steps), 1, free_steps * batch, s.dof, 1, {s.dof});
   return out;
 }
 
@@ -194,22 +194,20 @@ inline Var rollout_composed(const Var& given, const Var& x_gates, const RolloutW
     c = sigmoid(gate(1)) * c + sigmoid(gate(0)) * tanh(gate(2));
     h = sigmoid(gate(3)) * tanh(c);
   };
-  const auto rows = [&](const Var& bias) {
-    return expand(bias, 1, batch, bias.size(), 1, {batch, bias.size()});
-  };
+  const auto rows = [&](const Var& bias) { return broadcast_to(bias, {batch, bias.size()}); };
   Var h0 = zeros(context, {batch, k}), c0 = h0, h1 = h0, c1 = h0;
   Var a = reshape(slice(given, 0, 0, 1), {batch, dof});
   std::vector<Var> motion{slice(given, 0, 0, 1)};
   for (std::size_t t = 1; t < frames; ++t) {
     cell(reshape(slice(x_gates, 0, t - 1, 1), {batch, 4 * k}) +
-             matmul(concat_axis({a, h0}, 1), w.layer0, false, true),
+             matmul(concatenate({a, h0}, 1), w.layer0, false, true),
          h0, c0);
-    cell(rows(w.bias1) + matmul(concat_axis({h0, h1}, 1), w.layer1, false, true), h1, c1);
+    cell(rows(w.bias1) + matmul(concatenate({h0, h1}, 1), w.layer1, false, true), h1, c1);
     a = t < given.dim(0) ? reshape(slice(given, 0, t, 1), {batch, dof})
                          : a + matmul(h1, w.diff, false, true) + rows(w.diff_bias);
     motion.push_back(reshape(a, {1, batch, dof}));
   }
-  return concat_axis(motion, 0);
+  return concatenate(motion, 0);
 }
 
 }  // namespace detail
@@ -230,14 +228,14 @@ inline Var rollout(const Var& given, const Var& x_gates, const RolloutWeights& w
   const detail::RolloutShape& s = trace.shape;
   Tensor motion(given.context(), {frames, s.batch, dof});
   detail::copy_runs(trace.rows, 0, s.width(), motion, 0, dof, frames * s.batch, dof);
-  return record("rollout", {given, x_gates, w.layer0, w.layer1, w.bias1, w.diff, w.diff_bias},
-                std::move(motion),
-                [trace](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
-                  if (!detail::recording()) return detail::rollout_backward(trace, self, g.value(), needs);
-                  return detail::partial_derivatives(self.inputs, g, needs, [](const std::vector<Var>& in) {
-                    return detail::rollout_composed(in[0], in[1], {in[2], in[3], in[4], in[5], in[6]});
-                  });
-                });
+  return detail::fused(
+      "rollout", {given, x_gates, w.layer0, w.layer1, w.bias1, w.diff, w.diff_bias}, std::move(motion),
+      [trace](const Node& self, const Tensor& g, const Needs& needs) {
+        return detail::rollout_backward(trace, self, g, needs);
+      },
+      [](const std::vector<Var>& in) {
+        return detail::rollout_composed(in[0], in[1], {in[2], in[3], in[4], in[5], in[6]});
+      });
 }
 
 }  // namespace motiongan

@@ -16,8 +16,8 @@ class Adam : public Optimizer {
   explicit Adam(const std::vector<NamedParameter>& parameters, AdamOptions options = {})
       : Optimizer("Adam", parameters),
         options_(options),
-        mean_(filled(context(), values().shape(), 0)),
-        square_(filled(context(), values().shape(), 0)) {}
+        mean_(full(context(), values().shape(), 0)),
+        square_(full(context(), values().shape(), 0)) {}
 
   const AdamOptions& options() const { return options_; }
   const char* name() const override { return "adam"; }
@@ -29,7 +29,7 @@ class Adam : public Optimizer {
   void clip(double limit) {
     require(limit > 0, "Adam: parameters cannot be clipped at ", limit, ", expected a number above 0");
     context().launch("elementwise", "clamp_of", detail::vector_grid(values()), values(), values(),
-                     values().size(), Real{-limit}, Real{limit});
+                     values().size(), KernelReal{-limit}, KernelReal{limit});
   }
 
   /// The running means: all parameters one after the other.
@@ -42,8 +42,8 @@ class Adam : public Optimizer {
     const double step_size = options_.learning_rate / (1 - std::pow(options_.beta1, t)),
                  root = std::sqrt(1 - std::pow(options_.beta2, t));
     context().launch("adam", "adam", detail::vector_grid(values()), values(), gradients(), mean_, square_,
-                     values().size(), Real{options_.beta1}, Real{options_.beta2}, Real{1 - options_.beta1},
-                     Real{1 - options_.beta2}, Real{step_size}, Real{root}, Real{options_.epsilon});
+                     values().size(), KernelReal{options_.beta1}, KernelReal{options_.beta2}, KernelReal{1 - options_.beta1},
+                     KernelReal{1 - options_.beta2}, KernelReal{step_size}, KernelReal{root}, KernelReal{options_.epsilon});
   }
 
   AdamOptions options_;

@@ -48,7 +48,7 @@ class Optimizer {
     const Context context = parameters_[0].context();
     const std::size_t n = parameter_count(parameters);
     values_ = Tensor(context, {n});
-    gradients_ = filled(context, {n}, 0);
+    gradients_ = full(context, {n}, 0);
     std::size_t at = 0;
     for (const Var& p : parameters_) {
       const Tensor place = values_.view(at, p.shape());

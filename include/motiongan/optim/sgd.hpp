@@ -43,12 +43,12 @@ class Sgd : public Optimizer {
   void update() override {
     Tensor square = chunks_;
     if (options_.clip_norm > 0) {
-      context().launch("sgd", "squares_of_chunks", Grid::items(chunks_.size()), gradients(), chunks_,
+      context().launch("sgd", "squares_of_chunks", LaunchGrid::items(chunks_.size()), gradients(), chunks_,
                        gradients().size(), chunk);
-      square = detail::sum_middle_value(chunks_, 1, chunks_.size(), 1, 1, {1});
+      square = detail::sum_axis_value(chunks_, 1, chunks_.size(), 1, 1, {1});
     }
     context().launch("sgd", "sgd", detail::vector_grid(values()), values(), gradients(), square,
-                     values().size(), Real{rate(steps() - 1)}, Real{options_.clip_norm});
+                     values().size(), KernelReal{rate(steps() - 1)}, KernelReal{options_.clip_norm});
   }
 
   SgdOptions options_;

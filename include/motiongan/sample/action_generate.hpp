@@ -15,7 +15,7 @@ struct ActionGenerateOptions {
 /// One clip for each prior, all of the same schedule. The model makes T frames at once; where a piece ends
 /// inside them, the frames of the piece are kept and the next piece goes on from the last T frames kept, so
 /// that a class changes exactly where the schedule says. Ids are those of the priors.
-inline std::vector<motion::PositionClip> generate(const AttentionGan& model,
+inline std::vector<motion::PositionClip> generate(const ActionGan& model,
                                                   std::span<const ActionPrior> priors,
                                                   const ActionSchedule& schedule,
                                                   const ActionGenerateOptions& options = {}) {
@@ -59,7 +59,7 @@ struct SyntheticClip {
 /// A synthetic clip for each of `clips` of `data`: same prior, same class, same length (SPEC 5: synthetic
 /// data). Without root channels in the model's format the body goes where the real one went. Error where the
 /// model lacks a class of the data, or has another skeleton.
-inline std::vector<SyntheticClip> synthesise(const AttentionGan& model, const motion::ActionDataset& data,
+inline std::vector<SyntheticClip> synthesise(const ActionGan& model, const motion::ActionDataset& data,
                                              std::span<const motion::ActionClip> clips,
                                              std::uint64_t seed = 1, std::uint32_t first_sample = 0) {
   const motion::PositionFormat& format = model.format();

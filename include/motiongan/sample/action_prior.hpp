@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "motiongan/motion/action_dataset.hpp"
-#include "motiongan/motion/action_source.hpp"
+#include "motiongan/data/action_dataset.hpp"
+#include "motiongan/data/action_source.hpp"
 #include "motiongan/motion/position_clip.hpp"
-#include "motiongan/motion/position_format.hpp"
+#include "motiongan/data/position_format.hpp"
 
 namespace motiongan {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
-#include "motiongan/motion/position_format.hpp"
+#include "motiongan/data/position_format.hpp"
 
 namespace motiongan {
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <string_view>
 
-#include "motiongan/models/attention_gan.hpp"
-#include "motiongan/models/attention_rollout.hpp"
+#include "motiongan/models/action_gan.hpp"
+#include "motiongan/networks/attention_rollout.hpp"
 #include "motiongan/sample/action_prior.hpp"
 
 namespace motiongan {
@@ -39,7 +39,7 @@ class ActionStream {
 
   /// For attention generator and LSTM baseline alike. The weights are taken as they are now; the model must
   /// outlive the stream. Samples beyond `most_at_once` take a batch of their own.
-  explicit ActionStream(const AttentionGan& model, std::size_t most_at_once = 256)
+  explicit ActionStream(const ActionGan& model, std::size_t most_at_once = 256)
       : model_(model), format_(model.format()), most_at_once_(most_at_once) {
     require(most_at_once > 0, "an ActionStream of batches of 0 characters was asked for");
     if (!model.is_baseline()) rollout_.emplace(model.generator());
@@ -174,7 +174,7 @@ class ActionStream {
     Tensor noise;
     if (const std::size_t numbers = model_.options().noise_dim; numbers > 0) {
       Tensor each(context, {1, count, numbers});
-      fill_normal_each(each, Stream::noise, 0, Indices(context, keys));
+      fill_normal_each(each, RandomStream::noise, 0, Indices(context, keys));
       noise = each.reshape({count, numbers});
     }
     const std::vector<float> made = make(Tensor::from(context, {all, count, dof}, priors),
@@ -194,7 +194,7 @@ class ActionStream {
     }
   }
 
-  const AttentionGan& model_;
+  const ActionGan& model_;
   motion::PositionFormat format_;
   std::size_t most_at_once_;
   std::optional<AttentionRollout> rollout_;  // none for the baseline

@@ -2,7 +2,7 @@
 // there.
 #pragma once
 #include "motiongan/core/random.hpp"
-#include "motiongan/motion/action_dataset.hpp"
+#include "motiongan/data/action_dataset.hpp"
 #include "motiongan/ops/cross_entropy.hpp"
 
 namespace motiongan {
@@ -50,7 +50,7 @@ class ActionSampler {
 
   /// `size` windows, each at a start of its clip, all uniform.
   ActionBatch draw(std::uint64_t seed, std::uint32_t step, std::size_t size) const {
-    const RandomKey key{.seed = seed, .stream = Stream::windows, .step = step};
+    const RandomKey key{.seed = seed, .stream = RandomStream::windows, .step = step};
     std::vector<cl_int> rows;
     ActionBatch batch;
     for (std::uint32_t b = 0; b < size; ++b) {
@@ -67,8 +67,8 @@ class ActionSampler {
     }
     const std::size_t dof = poses_.dim(1), window = 2 * frames_;
     batch.motion = Tensor(context_, {window, size, dof});
-    context_.launch("layout", "gather_windows", Grid::items(window * size), poses_, Indices(context_, rows),
-                    relative_, batch.motion, window, size, dof, std::size_t{1}, dof, dof, dof, Real{0});
+    context_.launch("layout", "gather_windows", LaunchGrid::items(window * size), poses_, Indices(context_, rows),
+                    relative_, batch.motion, window, size, dof, std::size_t{1}, dof, dof, dof, KernelReal{0});
     batch.prior = batch.motion.view(0, {frames_, size, dof});
     batch.future = batch.motion.view(frames_ * size * dof, {frames_, size, dof});
     batch.classes = one_hot(context_, batch.labels, classes_);

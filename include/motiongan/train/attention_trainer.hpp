@@ -1,10 +1,10 @@
 // Training the attention WGAN-GP (Malek-Podjaski & Deligianni; SPEC 5): critic, classifier and generator,
 // each through the others but without a gradient for them.
 #pragma once
-#include "motiongan/models/attention_classifier.hpp"
-#include "motiongan/models/attention_critic.hpp"
-#include "motiongan/models/attention_gan.hpp"
-#include "motiongan/models/motion_losses.hpp"
+#include "motiongan/networks/attention_classifier.hpp"
+#include "motiongan/networks/attention_critic.hpp"
+#include "motiongan/models/action_gan.hpp"
+#include "motiongan/networks/motion_losses.hpp"
 #include "motiongan/train/action_windows.hpp"
 #include "motiongan/train/checkpoint.hpp"
 #include "motiongan/train/wgan_gp.hpp"
@@ -83,10 +83,10 @@ inline double accuracy_of(const Tensor& logits, std::span<const std::size_t> lab
   return static_cast<double>(right) / static_cast<double>(labels.size());
 }
 
-/// Trains an AttentionGan on a data set. The three kinds of steps are also callable by themselves.
+/// Trains an ActionGan on a data set. The three kinds of steps are also callable by themselves.
 class AttentionTrainer {
  public:
-  AttentionTrainer(AttentionGan& model, const motion::ActionDataset& data,
+  AttentionTrainer(ActionGan& model, const motion::ActionDataset& data,
                    const AttentionTrainOptions& options)
       : model_(model),
         options_(checked(options)),
@@ -116,7 +116,7 @@ class AttentionTrainer {
             " steps are more than the random numbers' counter holds (2^24 steps)");
   }
 
-  AttentionGan& model() { return model_; }
+  ActionGan& model() { return model_; }
   AttentionCritic& critic() { return critic_; }
   AttentionClassifier& classifier() { return classifier_; }
   const AttentionTrainOptions& options() const { return options_; }
@@ -146,24 +146,24 @@ class AttentionTrainer {
     Var prior = Var::constant(batch.prior), future;
     {
       const NoGrad values_only;
-      const std::size_t times = 1 + random_below(key.with(Stream::rollout), 0, options_.rollouts);
+      const std::size_t times = 1 + random_below(key.with(RandomStream::rollout), 0, options_.rollouts);
       for (std::size_t r = 0; r < times; ++r) {
         if (r > 0) prior = future;
         future = model_.make(prior, classes, noise_key(key, r));
       }
-      future = concat_axis({prior, future}, 0);
+      future = concatenate({prior, future}, 0);
     }
-    const Judge judge = [&](const Var& x) { return judged(x, classes); };
-    const Judge judge_pairs = [&](const Var& x) { return judged(x, concat_axis({classes, classes}, 0)); };
+    const CriticFn critic = [&](const Var& x) { return score(x, classes); };
+    const CriticFn critic_of_pairs = [&](const Var& x) { return score(x, concatenate({classes, classes}, 0)); };
     CriticLoss loss;
     if (options_.weight_clip > 0) {
-      loss.scores = judge_pairs(concat_axis({Var::constant(batch.motion), future}, 1));
+      loss.scores = critic_of_pairs(concatenate({Var::constant(batch.motion), future}, 1));
       loss.wasserstein = mean(slice(loss.scores, 0, 0, options_.batch)) -
                          mean(slice(loss.scores, 0, options_.batch, options_.batch));
       loss.loss = -loss.wasserstein;
     } else {
-      loss = critic_loss(judge_pairs, judge, batch.motion, future.value(),
-                         random_uniform(model_.context(), key.with(Stream::mix), options_.batch),
+      loss = critic_loss(critic_of_pairs, critic, batch.motion, future.value(),
+                         random_uniform(model_.context(), key.with(RandomStream::interpolation), options_.batch),
                          options_.lambda_gp);
     }
     critic_adam_.step(grad(loss.loss, critic_adam_.parameters()));
@@ -201,12 +201,12 @@ class AttentionTrainer {
     }
     // All rollouts side by side: a mean over the batch is the mean over them.
     const auto repeated = [&](const Var& x, std::size_t axis) {
-      return concat_axis(std::vector<Var>(options_.rollouts, x), axis);
+      return concatenate(std::vector<Var>(options_.rollouts, x), axis);
     };
-    const Var fed = concat_axis(priors, 1), made = concat_axis(futures, 1),
+    const Var fed = concatenate(priors, 1), made = concatenate(futures, 1),
               all_classes = repeated(classes, 0);
     GeneratorLoss loss;
-    loss.adversarial = generator_loss(judged(concat_axis({fed, made}, 0), all_classes));
+    loss.adversarial = generator_loss(score(concatenate({fed, made}, 0), all_classes));
     loss.total = loss.adversarial;
     const auto add = [&](Var& part, double weight, const Var& value) {
       part = value;
@@ -264,11 +264,11 @@ class AttentionTrainer {
     return key;
   }
 
-  Var judged(const Var& motion, const Var& classes) const {
+  Var score(const Var& motion, const Var& classes) const {
     return options_.critic_classes ? critic_(motion, classes) : critic_(motion);
   }
 
-  AttentionGan& model_;
+  ActionGan& model_;
   AttentionTrainOptions options_;
   ActionSampler windows_;
   AttentionCritic critic_;

@@ -1,6 +1,6 @@
 // Training the second paper's LSTM baseline (SPEC 5): it copies the second that follows a prior.
 #pragma once
-#include "motiongan/models/attention_gan.hpp"
+#include "motiongan/models/action_gan.hpp"
 #include "motiongan/train/action_windows.hpp"
 #include "motiongan/train/checkpoint.hpp"
 
@@ -29,10 +29,10 @@ struct BaselineLosses {
 /// As they stand in the log.
 inline std::vector<LossColumn> columns(const BaselineLosses& losses) { return {{"error", losses.error}}; }
 
-/// Trains an AttentionGan whose generator is the LSTM.
+/// Trains an ActionGan whose generator is the LSTM.
 class BaselineTrainer {
  public:
-  BaselineTrainer(AttentionGan& model, const motion::ActionDataset& data, const BaselineTrainOptions& options)
+  BaselineTrainer(ActionGan& model, const motion::ActionDataset& data, const BaselineTrainOptions& options)
       : model_(model),
         options_(options),
         windows_(model.context(), data, data.train, options.balanced),
@@ -48,7 +48,7 @@ class BaselineTrainer {
             " iterations are more than the random numbers' counter holds (2^24 steps)");
   }
 
-  AttentionGan& model() { return model_; }
+  ActionGan& model() { return model_; }
   const BaselineTrainOptions& options() const { return options_; }
   std::size_t iteration() const { return iteration_; }
   void set_iteration(std::size_t iteration) { iteration_ = iteration; }
@@ -71,7 +71,7 @@ class BaselineTrainer {
   }
 
  private:
-  AttentionGan& model_;
+  ActionGan& model_;
   BaselineTrainOptions options_;
   ActionSampler windows_;
   Adam adam_;

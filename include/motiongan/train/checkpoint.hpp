@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "motiongan/io/state_dict.hpp"
+#include "motiongan/nn/state_dict.hpp"
 #include "motiongan/optim/adam.hpp"
 
 namespace motiongan {

@@ -1,7 +1,7 @@
 // Training DVGAN (SPEC 4): critic steps and generator steps, nothing read back between them.
 #pragma once
 #include "motiongan/models/dvgan.hpp"
-#include "motiongan/models/dvgan_critic.hpp"
+#include "motiongan/networks/dvgan_critic.hpp"
 #include "motiongan/train/checkpoint.hpp"
 #include "motiongan/train/wgan_gp.hpp"
 #include "motiongan/train/windows.hpp"
@@ -110,7 +110,7 @@ class DvganTrainer {
   void critic_step(std::uint32_t step) {
     const Context& context = model_.context();
     const RandomKey key{.seed = options_.seed, .step = step};
-    const Batch batch = windows_.draw(options_.seed, step, options_.batch);
+    const CaptionedBatch batch = windows_.draw(options_.seed, step, options_.batch);
     Var fake;
     {
       const NoGrad values_only;
@@ -118,11 +118,11 @@ class DvganTrainer {
     }
     const Indices shift = draw_shift(key);
     const Tensor real = shifted(Var::constant(batch.motion), shift).value();
-    const Var h_txt = critic_.encode_text(batch.text), pairs_txt = concat_axis({h_txt, h_txt}, 0);
+    const Var h_txt = critic_.encode_text(batch.text), pairs_txt = concatenate({h_txt, h_txt}, 0);
     critic_loss_ =
         critic_loss([&](const Var& x) { return critic_(x, pairs_txt); },
                     [&](const Var& x) { return critic_(x, h_txt); }, real, shifted(fake, shift).value(),
-                    random_uniform(context, key.with(Stream::mix), options_.batch), options_.lambda_gp);
+                    random_uniform(context, key.with(RandomStream::interpolation), options_.batch), options_.lambda_gp);
     critic_adam_.step(grad(critic_loss_.loss, critic_adam_.parameters()));
     critic_loss_ = {
         {}, critic_loss_.wasserstein.detach(), critic_loss_.penalty.detach(), {}};  // lets go of the graph
@@ -131,7 +131,7 @@ class DvganTrainer {
   /// One update of the generator; the critic's parameters get no gradient.
   void generator_step(std::uint32_t step) {
     const RandomKey key{.seed = options_.seed, .step = step};
-    const Batch batch = windows_.draw(options_.seed, step, options_.batch);
+    const CaptionedBatch batch = windows_.draw(options_.seed, step, options_.batch);
     const Var fake = shifted(make_fake(batch, key), draw_shift(key));
     Var h_txt;
     {
@@ -150,8 +150,8 @@ class DvganTrainer {
 
  private:
   /// A fake for each real motion of the batch, of its caption.
-  Var make_fake(const Batch& batch, const RandomKey& key) const {
-    const RandomKey draw = key.with(Stream::seeding);
+  Var make_fake(const CaptionedBatch& batch, const RandomKey& key) const {
+    const RandomKey draw = key.with(RandomStream::seeding);
     const double chance = (static_cast<double>(random_word(draw, 0)) + 0.5) * 0x1p-32;
     if (!(chance < options_.completion_share)) return model_.make(batch.text, key);
     const std::size_t given =
@@ -163,7 +163,7 @@ class DvganTrainer {
   Indices draw_shift(const RandomKey& key) const {
     if (!options_.input_shift) return {};
     const std::size_t frames = model_.format().frames, half = frames / 2;
-    return random_integers(model_.context(), key.with(Stream::shift), options_.batch, -static_cast<int>(half),
+    return random_integers(model_.context(), key.with(RandomStream::shift), options_.batch, -static_cast<int>(half),
                            2 * half + 1);
   }
   Var shifted(const Var& motion, const Indices& shift) const {

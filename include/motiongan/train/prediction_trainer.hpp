@@ -135,7 +135,7 @@ class PredictionTrainer {
     const std::size_t count = options_.prefix + options_.future - 1;
     Var seen = frames_of(batch, 0, count);
     if (const double deviation = noise_at(step); deviation > 0) {
-      const RandomKey key{.seed = options_.seed, .stream = Stream::noise, .step = step};
+      const RandomKey key{.seed = options_.seed, .stream = RandomStream::noise, .step = step};
       const Tensor noise = random_normal(model_.context(), key, count, options_.batch, model_.dof());
       seen = weighted_sum(seen, 1, Var::constant(noise), deviation);
     }

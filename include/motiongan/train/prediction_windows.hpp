@@ -81,7 +81,7 @@ class PredictionSampler {
 
   /// `size` windows: the sequence uniform, then its start.
   PredictionBatch draw(std::uint64_t seed, std::uint32_t step, std::size_t size) const {
-    const RandomKey key{.seed = seed, .stream = Stream::windows, .step = step};
+    const RandomKey key{.seed = seed, .stream = RandomStream::windows, .step = step};
     std::vector<cl_int> rows;
     std::vector<std::size_t> actions;
     for (std::uint32_t b = 0; b < size; ++b) {
@@ -92,8 +92,8 @@ class PredictionSampler {
     const std::size_t dof = poses_.dim(1);
     PredictionBatch batch;
     batch.windows = Tensor(context_, {frames_, size, dof});
-    context_.launch("layout", "gather_windows", Grid::items(frames_ * size), poses_, Indices(context_, rows),
-                    relative_, batch.windows, frames_, size, dof, std::size_t{1}, dof, dof, dof, Real{0});
+    context_.launch("layout", "gather_windows", LaunchGrid::items(frames_ * size), poses_, Indices(context_, rows),
+                    relative_, batch.windows, frames_, size, dof, std::size_t{1}, dof, dof, dof, KernelReal{0});
     batch.actions = one_hot(context_, actions, action_count_);
     return batch;
   }

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "motiongan/models/ranker.hpp"
-#include "motiongan/motion/descriptions.hpp"
+#include "motiongan/data/descriptions.hpp"
 #include "motiongan/ops/cross_entropy.hpp"
 #include "motiongan/train/checkpoint.hpp"
 #include "motiongan/train/run.hpp"
@@ -79,7 +79,7 @@ class RankerTrainer {
     std::vector<std::size_t> others;
     for (std::size_t d = 0; d < descriptions_.size(); ++d)
       if (!chosen.contains(d)) others.push_back(d);
-    const RandomKey key{.seed = options_.seed, .stream = Stream::mix, .step = step};
+    const RandomKey key{.seed = options_.seed, .stream = RandomStream::interpolation, .step = step};
     for (std::uint32_t i = 0; i < others.size() && chosen.size() < options_.descriptions; ++i) {
       std::swap(others[i], others[i + random_below(key, i, others.size() - i)]);
       chosen.insert(others[i]);
@@ -90,7 +90,7 @@ class RankerTrainer {
   /// One update.
   void iterate() {
     const auto step = static_cast<std::uint32_t>(iteration_);
-    const Batch batch = windows_.draw(options_.seed, step, options_.batch);
+    const CaptionedBatch batch = windows_.draw(options_.seed, step, options_.batch);
     const std::vector<std::size_t> asked = candidates(batch.clips, step);
     std::vector<std::vector<int>> sentences;
     for (const std::size_t d : asked) sentences.push_back(sentences_[d]);

@@ -9,21 +9,21 @@
 namespace motiongan {
 
 /// A critic with everything but the motion fixed: [T, B, C] -> [B].
-using Judge = std::function<Var(const Var& motion)>;
+using CriticFn = std::function<Var(const Var& motion)>;
 
 /// eps*real + (1-eps)*fake with one eps [B] per sample; a leaf, ready to be differentiated by.
-inline Var mix(const Tensor& real, const Tensor& fake, const Tensor& eps) {
+inline Var interpolate(const Tensor& real, const Tensor& fake, const Tensor& eps) {
   const NoGrad values_only;
   const Var r = Var::constant(real), f = Var::constant(fake);
-  const Var e = expand_samples(Var::constant(eps), real.dim(0), real.dim(2));
+  const Var e = broadcast_to(reshape(Var::constant(eps), {real.dim(1), 1}), real.shape());
   return Var::leaf((f + e * (r - f)).value());
 }
 
-/// mean over samples of (|gradient of the judge at x| - 1)^2, [1]; the norm is over all frames and channels
-/// of a sample. Itself differentiable by the judge's parameters. `x` is a leaf.
-inline Var gradient_penalty(const Judge& judge, const Var& x) {
-  const Var slope = grad(judge(x), {x}, {.create_graph = true})[0];
-  const Var norm = sqrt(sum_per_sample(square(slope)) + 1e-12);
+/// mean over samples of (|gradient of the critic at x| - 1)^2, [1]; the norm is over all frames and channels
+/// of a sample. Itself differentiable with respect to the critic's parameters. `x` is a leaf.
+inline Var gradient_penalty(const CriticFn& critic, const Var& x) {
+  const Var gradient = grad(critic(x), {x}, {.create_graph = true})[0];
+  const Var norm = sqrt(sum_per_sample(square(gradient)) + 1e-12);
   return mean(square(norm - 1));
 }
 
@@ -35,15 +35,15 @@ struct CriticLoss {
   Var scores;  ///< [2B]: of the real, then of the fake motions
 };
 
-/// `judge_pairs` judges real and fake motions joined along the batch, [T, 2B, C] -> [2B]; `judge` a batch of
+/// `critic_of_pairs` scores real and fake motions joined along the batch, [T, 2B, C] -> [2B]; `critic` a batch of
 /// B.
-inline CriticLoss critic_loss(const Judge& judge_pairs, const Judge& judge, const Tensor& real,
+inline CriticLoss critic_loss(const CriticFn& critic_of_pairs, const CriticFn& critic, const Tensor& real,
                               const Tensor& fake, const Tensor& eps, double lambda) {
   const std::size_t batch = real.dim(1);
   CriticLoss out;
-  out.scores = judge_pairs(concat_axis({Var::constant(real), Var::constant(fake)}, 1));
+  out.scores = critic_of_pairs(concatenate({Var::constant(real), Var::constant(fake)}, 1));
   out.wasserstein = mean(slice(out.scores, 0, 0, batch)) - mean(slice(out.scores, 0, batch, batch));
-  out.penalty = gradient_penalty(judge, mix(real, fake, eps));
+  out.penalty = gradient_penalty(critic, interpolate(real, fake, eps));
   out.loss = weighted_sum(out.penalty, lambda, out.wasserstein, -1);
   return out;
 }

@@ -1,13 +1,13 @@
 // Batches of training windows, drawn on the device from clips that stay there.
 #pragma once
 #include "motiongan/core/random.hpp"
-#include "motiongan/motion/dataset.hpp"
+#include "motiongan/data/dataset.hpp"
 #include "motiongan/nn/text_encoder.hpp"
 
 namespace motiongan {
 
 /// Real motion with its captions: [N, B, M] and B sentences.
-struct Batch {
+struct CaptionedBatch {
   Tensor motion;
   Sentences text;
   std::vector<std::size_t> clips;  ///< of the data set's training clips, which one each window is of
@@ -42,9 +42,9 @@ class WindowSampler {
   }
 
   /// `size` windows: a clip, one of its captions and a start for each sample, all uniform.
-  Batch draw(std::uint64_t seed, std::uint32_t step, std::size_t size) const {
-    const RandomKey windows{.seed = seed, .stream = Stream::windows, .step = step},
-        captions = windows.with(Stream::captions);
+  CaptionedBatch draw(std::uint64_t seed, std::uint32_t step, std::size_t size) const {
+    const RandomKey windows{.seed = seed, .stream = RandomStream::windows, .step = step},
+        captions = windows.with(RandomStream::captions);
     std::vector<cl_int> rows;
     std::vector<std::vector<int>> sentences;
     std::vector<std::size_t> drawn;
@@ -55,11 +55,11 @@ class WindowSampler {
       sentences.push_back(clip.sentences[random_below(captions, b, clip.sentences.size())]);
     }
     const std::size_t dof = poses_.dim(1);
-    Batch batch{Tensor(context_, {frames_, size, dof}), Sentences(context_, sentences, vocabulary_),
+    CaptionedBatch batch{Tensor(context_, {frames_, size, dof}), Sentences(context_, sentences, vocabulary_),
                 std::move(drawn)};
-    context_.launch("layout", "gather_windows", Grid::items(frames_ * size), poses_, Indices(context_, rows),
+    context_.launch("layout", "gather_windows", LaunchGrid::items(frames_ * size), poses_, Indices(context_, rows),
                     relative_, batch.motion, frames_, size, dof, stride_, turning_.x, turning_.z,
-                    turning_.yaw, Real{turning_.yaw_scale});
+                    turning_.yaw, KernelReal{turning_.yaw_scale});
     return batch;
   }
 

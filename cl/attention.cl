@@ -1,0 +1,68 @@
+// Self-attention while sampling: what AttentionRollout runs without a graph.
+
+/// A layer of self-attention after its first product, sample by sample (Malek-Podjaski & Deligianni, eq.
+/// 1-3): o_j = sum over i of softmax_i(query_i . key_j) value_i, then out_j = x_j + bias + weight o_j and its
+/// ReLU. `all` [frames, batch, 3 * inner] holds query, key and value; x, out and rectified are [frames,
+/// batch, width]; weight is [inner, width]. Every group has frames + inner numbers of `scratch` for itself: a
+/// row of the map, and o_j. Groups of one item: x over samples, y over pieces of `rows` frames.
+__attribute__((reqd_work_group_size(1, 1, 1))) kernel void attend_frames(
+    global const real* all, uint all0, global real* scratch, uint scratch0, global const real* x, uint x0,
+    global const real* weight, uint weight0, global const real* bias, uint bias0, global real* out, uint out0,
+    global real* rectified, uint rectified0, uint frames, uint batch, uint inner, uint width, uint rows) {
+  const uint b = get_group_id(0), step = batch * 3 * inner;
+  const uint begin = get_group_id(1) * rows, end = min(frames, begin + rows);
+  global const real* query = all + all0 + b * 3 * inner;
+  global real* p = scratch + scratch0 + (get_group_id(1) * batch + b) * (frames + inner);
+  global real* o = p + frames;
+  for (uint j = begin; j < end; ++j) {
+    global const real* key = query + j * step + inner;
+    real top = -INFINITY;
+    for (uint i = 0; i < frames; ++i) {
+      global const real* q = query + i * step;
+      realv sums = 0;
+      for (uint c = 0; c < inner; c += VW)
+        sums = fma(load_some(q + c, inner - c), load_some(key + c, inner - c), sums);
+      p[i] = lane_sum(sums);
+      top = fmax(top, p[i]);
+    }
+    real sum = 0;
+    for (uint i = 0; i < frames; i += VW)
+      store_some(exp(load_some(p + i, frames - i) - top), p + i, frames - i);
+    for (uint i = 0; i < frames; ++i) sum += p[i];
+    for (uint c = 0; c < inner; c += VW) {
+      global const real* value = query + 2 * inner + c;
+      realv mixed = 0;
+      for (uint i = 0; i < frames; ++i, value += step)
+        mixed = fma((realv)(p[i]), load_some(value, inner - c), mixed);
+      store_some(mixed / sum, o + c, inner - c);
+    }
+    const uint row = (j * batch + b) * width;
+    for (uint h = 0; h < width; h += VW) {
+      const uint left = width - h;
+      realv sums = 0;
+      for (uint c = 0; c < inner; ++c)
+        sums = fma((realv)(o[c]), load_some(weight + weight0 + c * width + h, left), sums);
+      sums += load_some(bias + bias0 + h, left) + load_some(x + x0 + row + h, left);
+      store_some(sums, out + out0 + row + h, left);
+      store_some(sums < 0 ? (realv)0 : sums, rectified + rectified0 + row + h, left);
+    }
+  }
+}
+
+/// What the attention generator's first convolution sees: rows [frames, batch, dof + extra] from a prior
+/// [frames, batch, dof] and, on every frame, classes [batch, classes] and noise [batch, extra - classes].
+kernel void rows_with_constants(global const real* prior, uint prior0, global const real* classes,
+                                uint classes0, global const real* noise, uint noise0, global real* out,
+                                uint out0, uint rows, uint batch, uint dof, uint class_count,
+                                uint noise_count) {
+  const uint width = dof + class_count + noise_count, columns = (dof + VW - 1) / VW + 1;
+  const uint r = get_global_id(0) / columns, c = get_global_id(0) % columns * VW, b = r % batch;
+  if (r >= rows) return;
+  global real* to = out + out0 + r * width;
+  if (c < dof) {
+    store_some(load_some(prior + prior0 + r * dof + c, dof - c), to + c, dof - c);
+    return;
+  }
+  for (uint i = 0; i < class_count; ++i) to[dof + i] = classes[classes0 + b * class_count + i];
+  for (uint i = 0; i < noise_count; ++i) to[dof + class_count + i] = noise[noise0 + b * noise_count + i];
+}

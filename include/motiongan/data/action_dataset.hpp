@@ -1,0 +1,84 @@
+// Clips with classes as positions, cut into priors and futures for training (SPEC section 5).
+#pragma once
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "motiongan/data/action_labels.hpp"
+#include "motiongan/data/action_options.hpp"
+#include "motiongan/data/dataset.hpp"
+#include "motiongan/data/labelled_motion.hpp"
+#include "motiongan/motion/position_clip.hpp"
+#include "motiongan/data/position_format.hpp"
+#include "motiongan/formats/text_file.hpp"
+
+namespace motiongan::motion {
+
+/// One clip at the data set's rate.
+struct ActionClip {
+  std::string id;
+  std::string subject;  ///< empty where it was not asked for
+  std::size_t label = 0;
+  std::size_t frames = 0;
+  std::vector<float> poses;       ///< [frames, kept dof], normalised
+  Skeleton skeleton;              ///< with the clip's own bone lengths
+  std::vector<RootTrack> places;  ///< [frames], where the root stood
+};
+
+/// Clips of positions with classes, and all that is needed to turn poses back into positions.
+///
+/// Clips without a label are left out and counted, clips shorter than 2T frames are skipped. Clips are at
+/// `rate`: rotations are resampled by slerp, positions linearly. Unless subjects decide, each class is split
+/// by itself, so that both parts have clips of every class that has two. The normalizer is fitted to the
+/// training clips. Classes are in the order of their names.
+class ActionDataset {
+ public:
+  PositionFormat format;  ///< skeleton of the first clip used
+  ActionDatasetOptions options;
+  std::vector<ActionClip> train;  ///< in the order of their files
+  std::vector<ActionClip> test;
+  std::vector<SkippedClip> skipped;  ///< clips that are too short
+  std::size_t unlabelled = 0;        ///< clips without a label
+  std::size_t other_classes = 0;     ///< clips whose class is not one of options.classes
+  std::size_t dropped_frames = 0;    ///< T-pose frames taken from the clips' starts
+
+  /// All .bvh, .csv and .npy files in a folder and the folders in it, or one file. Error for an empty folder,
+  /// unreadable files, different joints, no or several sources of labels, no labelled clip, no clip that is
+  /// long enough, a class without a training clip, and an unknown subject or class in the options.
+  static ActionDataset from_folder(const std::filesystem::path& folder_or_file,
+                                   const ActionDatasetOptions& options);
+
+  /// The same from motions in memory. Where the options name no source of labels, a motion's first caption is
+  /// its label; one without captions has none.
+  static ActionDataset from_motions(const std::vector<LabelledMotion>& motions,
+                                    const ActionDatasetOptions& options = {});
+
+  /// The same from positions in memory; `labels` by the clips' ids.
+  static ActionDataset from_positions(const std::vector<PositionClip>& clips, const ActionLabels& labels,
+                                      const ActionDatasetOptions& options = {});
+
+  /// How many windows of 2T frames the clip holds: one may start at any frame below this.
+  std::size_t starts(const ActionClip& clip) const {
+    return clip.frames >= 2 * format.frames ? clip.frames - 2 * format.frames + 1 : 0;
+  }
+
+  /// Writes which clip is in which part, one a line: `train <TAB> id <TAB> class`, and the subject where it
+  /// is known.
+  void write_split(const std::filesystem::path& path) const {
+    std::string text = concat("# split of ", train.size() + test.size(), " clips, seed ", options.split_seed,
+                              ", training share ", options.train_share, "\n");
+    const auto append = [&](const char* part, const std::vector<ActionClip>& clips) {
+      for (const ActionClip& clip : clips)
+        text += concat(part, "\t", clip.id, "\t", format.classes[clip.label],
+                       clip.subject.empty() ? "" : "\t" + clip.subject, "\n");
+    };
+    append("train", train);
+    append("test", test);
+    write_text_atomically(path, text);
+  }
+};
+
+}  // namespace motiongan::motion
+
+#include "motiongan/data/action_dataset_build.hpp"

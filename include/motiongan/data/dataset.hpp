@@ -1,0 +1,105 @@
+// Captioned clips cut into windows for training (SPEC section 6).
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "motiongan/core/error.hpp"
+#include "motiongan/data/captions.hpp"
+#include "motiongan/data/clip_source.hpp"
+#include "motiongan/data/dataset_options.hpp"
+#include "motiongan/data/labelled_motion.hpp"
+#include "motiongan/data/motion_format.hpp"
+#include "motiongan/formats/text_file.hpp"
+
+namespace motiongan::motion {
+
+/// One clip, normalised, at the data set's common source rate.
+struct DatasetClip {
+  std::string id;
+  std::vector<std::string> captions;
+  std::vector<std::vector<int>> sentences;  ///< the captions' words as numbers of the vocabulary
+  std::size_t frames = 0;
+  std::vector<float> poses;  ///< [frames, kept dof]
+};
+
+/// A clip that was left out.
+struct SkippedClip {
+  std::string id;
+  std::string reason;
+};
+
+/// Clips as windows of `frames` poses at `rate`, and all that is needed to turn poses back into motion.
+///
+/// A window takes every stride-th frame of a clip, from any frame that leaves room for it. Dimensions in
+/// `format.relative_dims` (the root's x, z and yaw) are stored over their deviation and become relative when
+/// a window is drawn: value[start + i * stride] - value[start]. Where the layout has a yaw, x and z are then
+/// turned back by the yaw of the window's first frame: every window begins at the origin and faces the same
+/// way, wherever and whichever way it was recorded. All other dimensions are normalised by mean and deviation
+/// over all frames of the training clips. With RootRotation::velocity nothing is relative: steps and turns
+/// are those over `stride` frames of the clip, the distance of a window's frames; those of a window's first
+/// frame lead to it from the frame before the window.
+class Dataset {
+ public:
+  MotionFormat format;  ///< skeleton of the first clip used, statistics and vocabulary of the training clips
+  DatasetOptions options;
+  std::vector<DatasetClip> train;  ///< in the order of their ids
+  std::vector<DatasetClip> test;
+  std::vector<SkippedClip> skipped;  ///< clips that are too short
+  std::size_t stride = 1;            ///< frames of a clip between two frames of a window
+  std::size_t named = 0;             ///< clips whose caption was made from their name
+  std::size_t dropped_frames = 0;    ///< T-pose frames taken from the clips' starts
+
+  /// All BVH files in a folder and the folders in it, in sorted order, or one file.
+  ///
+  /// Only clips of at least frames / rate seconds are used. A clip keeps its rate if that is a multiple of
+  /// `rate`; otherwise it is resampled to the largest multiple of `rate` below it (to `rate` itself if it is
+  /// slower). With clips of several rates the smallest stride counts for all, and the others are resampled.
+  /// Captions are found by the file's name without extension (or its path below the folder); a clip that has
+  /// none takes one from its name. Error for an empty folder, unreadable files, different skeletons, and if
+  /// no clip is long enough.
+  static Dataset from_bvh(const std::filesystem::path& folder_or_file, const DatasetOptions& options = {});
+
+  /// The same from motions in memory; `options.first_frame` does not apply. Captions in `options.captions`,
+  /// if given, come before those of the motions.
+  static Dataset from_motions(const std::vector<LabelledMotion>& motions, const DatasetOptions& options = {});
+
+  /// How many windows the clip holds: a window may start at any frame below this. At least 1.
+  std::size_t starts(const DatasetClip& clip) const {
+    const std::size_t reach = (format.frames - 1) * stride;
+    return clip.frames > reach ? clip.frames - reach : 0;
+  }
+
+  /// The window that starts at frame `start`, [format.frames, kept dof], into `out`.
+  void window(const DatasetClip& clip, std::size_t start, std::span<float> out) const {
+    const std::size_t dof = format.dof();
+    require(start < starts(clip), "window start ", start, " of clip '", clip.id, "', expected less than ",
+            starts(clip));
+    require(out.size() == format.frames * dof, "a window has ", format.frames, " x ", dof,
+            " numbers, found room for ", out.size());
+    for (std::size_t i = 0; i < format.frames; ++i)
+      for (std::size_t k = 0; k < dof; ++k) out[i * dof + k] = clip.poses[(start + i * stride) * dof + k];
+    format.make_relative(out);
+  }
+
+  /// Motion of a window's poses.
+  Motion to_motion(std::span<const float> normalised_window) const {
+    return format.to_motion(normalised_window);
+  }
+
+  /// Writes which clip is in which part, one a line: `train <TAB> id`.
+  void write_split(const std::filesystem::path& path) const {
+    std::string text = concat("# split of ", train.size() + test.size(), " clips, seed ", options.split_seed,
+                              ", training share ", options.train_share, "\n");
+    for (const DatasetClip& clip : train) text += "train\t" + clip.id + "\n";
+    for (const DatasetClip& clip : test) text += "test\t" + clip.id + "\n";
+    write_text_atomically(path, text);
+  }
+};
+
+}  // namespace motiongan::motion
+
+#include "motiongan/data/dataset_build.hpp"

@@ -1,0 +1,277 @@
+// How a Dataset is made of clips. Included by dataset.hpp.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "motiongan/core/error.hpp"
+#include "motiongan/formats/bvh_reader.hpp"
+#include "motiongan/data/dataset.hpp"
+#include "motiongan/data/split.hpp"
+
+namespace motiongan::motion {
+
+namespace dataset_detail {
+
+inline std::string two_decimals(double value) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.2f", value);
+  return text;
+}
+
+/// A clip that will be used, and where it came from.
+struct Used {
+  std::size_t source = 0;
+  EncodedClip clip;
+};
+
+/// Encodes all sources that hold a window, all at one stride and with one root joint.
+inline std::vector<Used> encode_all(const std::vector<ClipSource>& sources, Dataset& data, int& root) {
+  const DatasetOptions& o = data.options;
+  std::vector<EncodedClip> clips(sources.size());
+  in_two_threads(sources.size(), [&](std::size_t i) { clips[i] = encode_clip(sources[i].load(), o, 0, -1); });
+
+  std::size_t longest = 0;
+  std::vector<Used> used;
+  for (std::size_t i = 0; i < clips.size(); ++i) {
+    if (clips[i].seconds() > clips[longest].seconds()) longest = i;
+    const std::size_t reach = (o.frames - 1) * clips[i].stride;
+    if (clips[i].frames > reach) {
+      used.push_back({i, std::move(clips[i])});
+    } else {
+      data.skipped.push_back(
+          {sources[i].id,
+           concat(two_decimals(clips[i].seconds()), " s long, a window of ", o.frames, " frames at ", o.rate,
+                  " per second is ", two_decimals(static_cast<double>(o.frames) / o.rate), " s")});
+    }
+  }
+  if (used.empty()) {
+    const double seconds = clips[longest].seconds();
+    throw Error(
+        "none of ", clips.size(), " clips holds ", o.frames, " frames at ", o.rate, " per second (",
+        two_decimals(static_cast<double>(o.frames) / o.rate), " s); the longest, '", sources[longest].id,
+        "', has ", two_decimals(seconds), " s: use at most ", std::floor(seconds * o.rate), " frames, or ",
+        seconds > 0 ? two_decimals(std::ceil(100 * static_cast<double>(o.frames) / seconds) / 100) : "no",
+        " frames per second or more");
+  }
+
+  data.stride = used.front().clip.stride;
+  root = 0;
+  for (const Used& u : used) {
+    check_same_joints(used.front().clip.skeleton, sources[used.front().source].id, u.clip.skeleton,
+                      sources[u.source].id);
+    data.stride = std::min(data.stride, u.clip.stride);
+    root = std::max(root, u.clip.root);  // a clip in which nothing travels says 0
+  }
+  in_two_threads(used.size(), [&](std::size_t i) {
+    EncodedClip& clip = used[i].clip;
+    if (clip.stride == data.stride &&
+        (clip.root == root || (!o.root_position && o.root_rotation == RootRotation::expmap)))
+      return;
+    clip = encode_clip(sources[used[i].source].load(), o, data.stride, root);
+  });
+  // Resampling rounds a clip's length down to whole frames: it may have lost its only window.
+  std::erase_if(used, [&](const Used& u) {
+    if (u.clip.frames > (o.frames - 1) * data.stride) return false;
+    data.skipped.push_back(
+        {sources[u.source].id, "too short for a window after resampling to the common rate"});
+    return true;
+  });
+  require(!used.empty(), "no clip holds a window of ", o.frames, " frames at ", o.rate,
+          " per second after resampling; use fewer frames");
+  return used;
+}
+
+/// The captions of a source: from the file, else its own, else from its name.
+inline std::vector<std::string> captions_of(const ClipSource& source, const Captions& file, Dataset& data) {
+  std::vector<std::string> out = source.captions;
+  const std::string stem = std::filesystem::path(source.name).stem().string();
+  for (const std::string& key : {stem, source.id})
+    if (const auto at = file.find(key); at != file.end()) out = at->second;
+  if (out.empty()) {
+    out.push_back(caption_from_name(source.name));
+    ++data.named;
+  }
+  for (const std::string& caption : out) {
+    require(!split_words(caption).empty(), "clip '", source.id, "' has the caption '", caption,
+            "', expected at least one word");
+    require(is_utf8(caption), "clip '", source.id, "' has a caption that is not UTF-8");
+  }
+  return out;
+}
+
+/// Mean and deviation of the training clips; for the root's x, z and yaw, unless they are steps and turns,
+/// those of windows.
+inline Normalizer fit_normalizer(const std::vector<Used>& used, const std::vector<bool>& is_train,
+                                 const PoseLayout& layout, std::size_t frames, std::size_t stride) {
+  const std::size_t dof = layout.dof();
+  std::vector<double> mean(dof), std(dof);
+  std::size_t rows = 0;
+  const auto for_rows = [&](auto&& work) {
+    for (std::size_t c = 0; c < used.size(); ++c)
+      if (is_train[c])
+        for (std::size_t f = 0; f < used[c].clip.frames; ++f) work(used[c].clip.poses.data() + f * dof);
+  };
+  for_rows([&](const double* pose) {
+    ++rows;
+    for (std::size_t d = 0; d < dof; ++d) mean[d] += pose[d];
+  });
+  for (double& m : mean) m /= static_cast<double>(rows);
+  for_rows([&](const double* pose) {
+    for (std::size_t d = 0; d < dof; ++d) std[d] += (pose[d] - mean[d]) * (pose[d] - mean[d]);
+  });
+  for (double& s : std) s = std::sqrt(s / static_cast<double>(rows));
+
+  // Dimensions that count from a window's first frame: mean 0, root mean square over all windows. x and z
+  // share theirs where windows are turned or hold steps, so that a turn stays a turn.
+  std::vector<std::size_t> relative;
+  if (layout.root_position() && !layout.has_steps())
+    relative = {layout.position_dim(), layout.position_dim() + 2};
+  if (layout.has_yaw() && !layout.has_steps()) relative.push_back(layout.yaw_dim());
+  for (const std::size_t d : relative) {
+    double squares = 0, count = 0;
+    for (std::size_t c = 0; c < used.size(); ++c) {
+      if (!is_train[c]) continue;
+      const EncodedClip& clip = used[c].clip;
+      for (std::size_t start = 0; start + (frames - 1) * stride < clip.frames; ++start) {
+        for (std::size_t i = 0; i < frames; ++i) {
+          const double moved = clip.poses[(start + i * stride) * dof + d] - clip.poses[start * dof + d];
+          squares += moved * moved;
+        }
+        count += static_cast<double>(frames);
+      }
+    }
+    mean[d] = 0;
+    std[d] = std::sqrt(squares / count);
+  }
+  if (layout.has_yaw() && layout.root_position()) {
+    double &x = std[layout.position_dim()], &z = std[layout.position_dim() + 2];
+    x = z = std::sqrt((x * x + z * z) / 2);
+  }
+  return Normalizer(std::move(mean), std::move(std));
+}
+
+/// The range of the training windows: over all frames, and for relative dimensions over windows; where a clip
+/// has more than 200 window starts, over at most 200 of them, evenly spread.
+inline void fit_range(Dataset& data) {
+  MotionFormat& format = data.format;
+  const std::size_t dof = format.dof();
+  const auto& relative = format.relative_dims;
+  std::vector<float> low(dof, std::numeric_limits<float>::max()),
+      high(dof, std::numeric_limits<float>::lowest());
+  const auto widen = [&](std::size_t k, float value) {
+    low[k] = std::min(low[k], value);
+    high[k] = std::max(high[k], value);
+  };
+  for (const DatasetClip& clip : data.train)
+    for (std::size_t i = 0; i < clip.poses.size(); ++i) widen(i % dof, clip.poses[i]);
+  for (const std::size_t k : relative) low[k] = high[k] = 0;  // every window's first frame
+  std::vector<float> window(format.frames * dof);             // only relative dimensions are filled in
+  for (const DatasetClip& clip : data.train) {
+    if (relative.empty()) break;
+    const std::size_t starts = data.starts(clip), leap = (starts + 199) / 200;
+    for (std::size_t start = 0; start < starts; start += leap) {
+      for (std::size_t i = 0; i < format.frames; ++i)
+        for (const std::size_t k : relative)
+          window[i * dof + k] = clip.poses[(start + i * data.stride) * dof + k];
+      format.make_relative(std::span<float>(window));
+      for (std::size_t i = 0; i < format.frames; ++i)
+        for (const std::size_t k : relative) widen(k, window[i * dof + k]);
+    }
+  }
+  format.low.assign(low.begin(), low.end());
+  format.high.assign(high.begin(), high.end());
+}
+
+inline Dataset build(const std::vector<ClipSource>& sources, const DatasetOptions& options) {
+  require(options.frames > 0, "a window of 0 frames was asked for, expected at least 1");
+  require(std::isfinite(options.rate) && options.rate > 0, "a rate of ", options.rate,
+          " frames per second was asked for, expected more than 0");
+  require(!sources.empty(), "a data set needs at least one clip");
+  std::set<std::string> ids;
+  for (const ClipSource& s : sources) require(ids.insert(s.id).second, "two clips are called '", s.id, "'");
+  Dataset data;
+  data.options = options;
+  const Captions captions = options.captions.empty() ? Captions{} : read_captions(options.captions);
+  int root = 0;
+  const std::vector<Used> used = encode_all(sources, data, root);
+  const std::vector<bool> is_train = split_clips(used.size(), options.train_share, options.split_seed);
+
+  MotionFormat& format = data.format;
+  format.layout = PoseLayout(used.front().clip.skeleton, options.root_position,
+                             static_cast<std::size_t>(root), options.root_rotation);
+  for (const Joint& joint : format.skeleton().joints)
+    require(is_utf8(joint.name), "clip '", sources[used.front().source].id, "' has a joint called '",
+            joint.name, "', which is not UTF-8; a model file cannot hold it: rename the joint");
+  format.rate = options.rate;
+  format.frames = options.frames;
+  format.normalizer = fit_normalizer(used, is_train, format.layout, options.frames, data.stride);
+  const auto& kept = format.normalizer.kept();
+  const PoseLayout& layout = format.layout;
+  for (std::size_t k = 0; k < kept.size() && !layout.has_steps(); ++k) {
+    const bool ground =
+        options.root_position && (kept[k] == layout.position_dim() || kept[k] == layout.position_dim() + 2);
+    const bool yaw = layout.has_yaw() && kept[k] == layout.yaw_dim();
+    if (ground || yaw) format.relative_dims.push_back(k);
+  }
+  format.check();  // before clips are normalised: something must move
+
+  std::vector<std::string> training_captions;
+  for (std::size_t c = 0; c < used.size(); ++c) {
+    DatasetClip clip;
+    clip.id = sources[used[c].source].id;
+    clip.captions = captions_of(sources[used[c].source], captions, data);
+    clip.frames = used[c].clip.frames;
+    clip.poses = format.normalizer.normalize<float>(used[c].clip.poses);
+    if (is_train[c])
+      training_captions.insert(training_captions.end(), clip.captions.begin(), clip.captions.end());
+    (is_train[c] ? data.train : data.test).push_back(std::move(clip));
+  }
+  fit_range(data);
+  format.check();
+  format.vocabulary = Vocabulary::from_captions(training_captions);
+  for (auto* part : {&data.train, &data.test})
+    for (DatasetClip& clip : *part)
+      for (const std::string& caption : clip.captions)
+        clip.sentences.push_back(format.vocabulary.encode(caption));
+  return data;
+}
+
+}  // namespace dataset_detail
+
+inline Dataset Dataset::from_bvh(const std::filesystem::path& folder_or_file, const DatasetOptions& options) {
+  const std::vector<std::filesystem::path> files = find_bvh_files(folder_or_file);
+  const std::vector<std::string> ids = clip_ids(files, folder_or_file);
+  std::vector<std::size_t> dropped(files.size(), 0);
+  std::vector<ClipSource> sources;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    sources.push_back(
+        {ids[i], files[i].string(), {}, [&dropped, i, file = files[i], rule = options.first_frame] {
+           Clip clip = read_bvh(file);
+           dropped[i] = drop_first_frames(clip, rule);
+           return motion::to_motion(clip);
+         }});
+  }
+  Dataset data = dataset_detail::build(sources, options);
+  for (const std::size_t n : dropped) data.dropped_frames += n;
+  return data;
+}
+
+inline Dataset Dataset::from_motions(const std::vector<LabelledMotion>& motions,
+                                     const DatasetOptions& options) {
+  std::vector<ClipSource> sources;
+  for (const LabelledMotion& m : motions)
+    sources.push_back({m.id, m.id, m.captions, [&m] { return m.motion; }});
+  return dataset_detail::build(sources, options);
+}
+
+}  // namespace motiongan::motion

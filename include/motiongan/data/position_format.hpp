@@ -1,0 +1,165 @@
+// What must be known about motion to use a trained model of positions and classes.
+#pragma once
+#include <algorithm>
+#include <cstddef>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "motiongan/core/error.hpp"
+#include "motiongan/motion/kinematics.hpp"
+#include "motiongan/data/normalizer.hpp"
+#include "motiongan/data/position_layout.hpp"
+#include "motiongan/motion/skeleton.hpp"
+#include "motiongan/motion/skeleton_match.hpp"
+#include "motiongan/formats/text_file.hpp"
+
+namespace motiongan::motion {
+
+/// A joint and the one above it.
+struct Bone {
+  std::size_t joint = 0, parent = 0;
+  friend bool operator==(const Bone&, const Bone&) = default;
+};
+
+namespace position_format_detail {
+
+/// How many letters must be put in, taken out or exchanged to make `b` of `a`.
+inline std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t exchanged = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({exchanged, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace position_format_detail
+
+/// How the numbers that a network sees become positions, and names of classes become numbers (SPEC section
+/// 5).
+struct PositionFormat {
+  PositionLayout layout;  ///< holds the skeleton
+  Normalizer normalizer;
+  double rate = 30;                  ///< frames per second
+  std::size_t frames = 30;           ///< T, frames of a prior and of a future
+  std::vector<std::string> classes;  ///< names, in the order of the class numbers
+
+  const Skeleton& skeleton() const { return layout.skeleton(); }
+
+  /// Numbers per frame that a network sees.
+  std::size_t dof() const { return normalizer.kept_dof(); }
+
+  /// The bones that have a length at rest (a millionth of the mean or more), in the order of their joints.
+  std::vector<Bone> bones() const {
+    const std::vector<double> lengths = bone_lengths(skeleton());
+    double sum = 0;
+    for (const double l : lengths) sum += l;
+    std::vector<Bone> out;
+    for (std::size_t j = 1; j < lengths.size(); ++j)
+      if (lengths[j] > 0 && lengths[j] >= 1e-6 * sum / static_cast<double>(lengths.size() - 1))
+        out.push_back({j, static_cast<std::size_t>(skeleton().joints[j].parent)});
+    return out;
+  }
+
+  /// Mean rest length of bones(), in the file's unit; 0 where there is none.
+  double mean_bone_length() const {
+    const std::vector<double> lengths = bone_lengths(skeleton());
+    const std::vector<Bone> all = bones();
+    double sum = 0;
+    for (const Bone& bone : all) sum += lengths[bone.joint];
+    return all.empty() ? 0 : sum / static_cast<double>(all.size());
+  }
+
+  /// Bone vectors (joint - parent, in the body's frame, in the file's unit) of bones() are
+  /// bone_map() * normalised pose + bone_shift(): [3 * bones, dof()], row by row. At most two numbers of a
+  /// row are not 0.
+  std::vector<double> bone_map() const {
+    const std::vector<Bone> all = bones();
+    const auto& kept = normalizer.kept();
+    std::vector<double> out(3 * all.size() * dof(), 0.0);
+    for (std::size_t b = 0; b < all.size(); ++b)
+      for (std::size_t a = 0; a < 3; ++a) {
+        double* const row = &out[(3 * b + a) * dof()];
+        for (std::size_t k = 0; k < kept.size(); ++k) {
+          if (kept[k] == 3 * all[b].joint + a) row[k] += normalizer.std()[kept[k]];
+          if (kept[k] == 3 * all[b].parent + a) row[k] -= normalizer.std()[kept[k]];
+        }
+      }
+    return out;
+  }
+
+  /// Bone vectors of the mean pose, [3 * bones].
+  std::vector<double> bone_shift() const {
+    std::vector<double> out;
+    for (const Bone& bone : bones())
+      for (std::size_t a = 0; a < 3; ++a)
+        out.push_back(normalizer.mean()[3 * bone.joint + a] - normalizer.mean()[3 * bone.parent + a]);
+    return out;
+  }
+
+  /// Positions [frames, joints] in the world as a network sees them, [frames, dof()].
+  std::vector<float> encode(std::span<const Vec3> positions) const {
+    return normalizer.normalize<float>(layout.encode(positions));
+  }
+
+  /// Positions [frames, joints] of normalised poses [frames, dof()]; for `track` see PositionLayout::decode.
+  std::vector<Vec3> decode(std::span<const float> poses, RootTrack* track = nullptr) const {
+    return layout.decode(normalizer.denormalize(poses), track);
+  }
+
+  /// Positions [frames, joints] of normalised poses [frames, dof()] that stand where `places` says.
+  std::vector<Vec3> restore(std::span<const float> poses, std::span<const RootTrack> places) const {
+    return layout.restore(normalizer.denormalize(poses), places);
+  }
+
+  /// The number of the class. Error, naming the classes there are and the most alike, for another name.
+  std::size_t class_index(std::string_view name) const {
+    std::string known;
+    std::size_t best = 0, fewest = static_cast<std::size_t>(-1);
+    for (std::size_t c = 0; c < classes.size(); ++c) {
+      if (classes[c] == name) return c;
+      known += (c > 0 ? ", '" : "'") + classes[c] + "'";
+      const std::size_t apart = position_format_detail::edit_distance(name, classes[c]);
+      if (apart < fewest) fewest = apart, best = c;
+    }
+    const bool alike = !classes.empty() && 2 * fewest <= std::max<std::size_t>(name.size(), 2);
+    throw Error("there is no class '", name, "'",
+                alike ? "; is '" + classes[best] + "' meant?" : std::string("."),
+                " The classes are: ", known.empty() ? std::string("none") : known);
+  }
+
+  /// Error, naming the joints, unless motion of the skeleton `other` can be this format's; bone lengths and
+  /// channels may differ. `what` is what the message calls its owner, such as "the prior walk.bvh".
+  void require_skeleton(const Skeleton& other, const std::string& what) const {
+    require_same_joints(skeleton(), other, what);
+  }
+
+  /// Error unless the parts fit each other.
+  void check() const {
+    require(skeleton().size() > 0, "a position format has no skeleton");
+    require(normalizer.full_dof() == layout.dof(), "a normalizer of ", normalizer.full_dof(),
+            " dimensions does not fit a pose of ", layout.dof());
+    require(dof() > 0, "all ", layout.dof(), " pose dimensions are constant: nothing moves");
+    require(rate > 0 && rate < 1e6, "a position format has a rate of ", rate,
+            " frames per second, expected more than 0");
+    require(frames > 0, "a position format has windows of 0 frames, expected at least 1");
+    require(!classes.empty(), "a position format has no classes, expected at least one");
+    std::set<std::string_view> seen;
+    for (const std::string& name : classes) {
+      require(!name.empty() && is_utf8(name), "the class '", name,
+              "' is empty or not UTF-8, expected a name");
+      require(seen.insert(name).second, "two classes are called '", name, "'");
+    }
+  }
+};
+
+}  // namespace motiongan::motion

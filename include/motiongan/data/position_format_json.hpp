@@ -1,0 +1,48 @@
+// A PositionFormat as JSON: the part of a model file that says what its numbers mean.
+#pragma once
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "motiongan/core/error.hpp"
+#include "motiongan/data/motion_format_json.hpp"
+#include "motiongan/formats/bvh.hpp"
+#include "motiongan/data/position_format.hpp"
+
+namespace motiongan::io {
+
+/// {"skeleton": HIERARCHY text, "root_track", "rate", "frames", "mean": [full dof], "std": [full dof],
+/// "classes": [names]}; every number comes back exactly.
+inline nlohmann::json to_json(const motion::PositionFormat& format) {
+  format.check();
+  return {{"skeleton", motion::format_hierarchy(format.skeleton())},
+          {"root_track", format.layout.root_track()},
+          {"rate", format.rate},
+          {"frames", format.frames},
+          {"mean", format.normalizer.mean()},
+          {"std", format.normalizer.std()},
+          {"classes", format.classes}};
+}
+
+/// The inverse of to_json. Error, naming the member, for anything that is missing, of another type or does
+/// not fit the rest.
+inline motion::PositionFormat position_format_from_json(const nlohmann::json& json) {
+  using motion_format_detail::read;
+  require(json.is_object(), "a position format is ", json.type_name(), ", expected a JSON object");
+  motion::PositionFormat format;
+  motion::Skeleton skeleton =
+      motion::parse_hierarchy(read<std::string>(json, "skeleton", "HIERARCHY text"), "skeleton of the model");
+  format.layout =
+      motion::PositionLayout(std::move(skeleton), read<bool>(json, "root_track", "true or false"));
+  format.rate = read<double>(json, "rate", "frames per second");
+  format.frames = read<std::size_t>(json, "frames", "a whole number, 1 or more");
+  format.normalizer = motion::Normalizer(read<std::vector<double>>(json, "mean", "numbers"),
+                                         read<std::vector<double>>(json, "std", "numbers"));
+  format.classes = read<std::vector<std::string>>(json, "classes", "names");
+  format.check();
+  return format;
+}
+
+}  // namespace motiongan::io

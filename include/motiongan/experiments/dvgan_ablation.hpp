@@ -1,0 +1,157 @@
+// The first paper's comparison: generators, critics, validation, input shift and final cut, in every
+// combination (Lin & Amer, Tables 2 and S1; SPEC 7).
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "motiongan/metrics/mean_std.hpp"
+#include "motiongan/experiments/model_evaluation.hpp"
+#include "motiongan/experiments/paper_tables.hpp"
+#include "motiongan/train/dvgan_trainer.hpp"
+
+namespace motiongan {
+
+/// A row of the comparison.
+struct DvganVariant {
+  GeneratorKind generator = GeneratorKind::cnn;
+  CriticKind critic = CriticKind::cnn;
+  Validation validation = Validation::dense;  ///< of the CNN critic; the RNN critic has none
+  bool shift = false, cut = false;
+
+  bool operator==(const DvganVariant&) const = default;
+
+  /// "cnn-cnn-dense-shift-cut": generator, critic, the CNN critic's validation, then what is on.
+  std::string name() const {
+    std::string out = generator == GeneratorKind::cnn ? "cnn" : "rnn";
+    out += critic == CriticKind::cnn ? "-cnn-" + std::string(validation_name()) : "-rnn";
+    if (shift) out += "-shift";
+    if (cut) out += "-cut";
+    return out;
+  }
+  /// "dense", "mod2" or "final"; empty for the RNN critic.
+  std::string_view validation_name() const {
+    if (critic == CriticKind::rnn) return "";
+    return validation == Validation::dense ? "dense" : validation == Validation::mod2 ? "mod2" : "final";
+  }
+
+  DvganOptions model(DvganOptions options) const {
+    options.generator = generator;
+    options.final_cut = cut;
+    return options;
+  }
+  DvganTrainOptions training(DvganTrainOptions options) const {
+    options.critic.critic = critic;
+    options.critic.validation = validation;
+    options.input_shift = shift;
+    return options;
+  }
+
+  /// The same row of one of the paper's tables; none where it does not stand there.
+  const paper::GeneratorRow* find(std::span<const paper::GeneratorRow> table) const {
+    for (const paper::GeneratorRow& row : table)
+      if (row.generator == (generator == GeneratorKind::cnn ? "cnn" : "rnn") &&
+          row.critic == (critic == CriticKind::cnn ? "cnn" : "rnn") && row.validation == validation_name() &&
+          row.shift == shift && row.cut == cut)
+        return &row;
+    return nullptr;
+  }
+};
+
+/// The row of the paper's table.
+inline DvganVariant variant_of(const paper::GeneratorRow& row) {
+  return {.generator = row.generator == "rnn" ? GeneratorKind::rnn : GeneratorKind::cnn,
+          .critic = row.critic == "rnn" ? CriticKind::rnn : CriticKind::cnn,
+          .validation = row.validation == "final"  ? Validation::final
+                        : row.validation == "mod2" ? Validation::mod2
+                                                   : Validation::dense,
+          .shift = row.shift,
+          .cut = row.cut};
+}
+
+/// Table 2's eight rows in its order, and what Table S1 adds: both generators against the RNN critic.
+inline std::vector<DvganVariant> paper_dvgan_variants() {
+  std::vector<DvganVariant> out;
+  const auto add = [&](const paper::GeneratorRow& row) {
+    const DvganVariant variant = variant_of(row);
+    if (std::find(out.begin(), out.end(), variant) == out.end()) out.push_back(variant);
+  };
+  for (const paper::GeneratorRow& row : paper::table2_cmu) add(row);
+  for (const paper::GeneratorRow& row : paper::table_s1_h36m) add(row);
+  return out;
+}
+
+/// All 32: two generators, four ways to judge, with and without shift and cut.
+inline std::vector<DvganVariant> all_dvgan_variants() {
+  std::vector<DvganVariant> out;
+  for (const GeneratorKind generator : {GeneratorKind::cnn, GeneratorKind::rnn})
+    for (const auto& [critic, validation] :
+         {std::pair{CriticKind::cnn, Validation::final}, std::pair{CriticKind::cnn, Validation::mod2},
+          std::pair{CriticKind::cnn, Validation::dense}, std::pair{CriticKind::rnn, Validation::dense}})
+      for (const bool cut : {false, true})
+        for (const bool shift : {false, true}) out.push_back({generator, critic, validation, shift, cut});
+  return out;
+}
+
+/// The variant of a name(). Error, saying how they are made, for another one.
+inline DvganVariant dvgan_variant(std::string_view name) {
+  for (const DvganVariant& variant : all_dvgan_variants())
+    if (variant.name() == name) return variant;
+  throw Error("there is no variant called \"", name,
+              "\"; a name is generator-critic (cnn or rnn), for the CNN critic -final, -mod2 or -dense, then "
+              "-shift and -cut where they are on, as cnn-cnn-dense-shift-cut or rnn-rnn");
+}
+
+/// One training of the comparison, measured.
+struct DvganRun {
+  std::uint64_t seed = 0;
+  std::size_t iterations = 0;
+  ModelEvaluation evaluation;
+};
+
+/// A variant's trainings.
+struct DvganAblationRow {
+  DvganVariant variant;
+  std::vector<DvganRun> runs;
+
+  /// Of a number of each run.
+  template <class Measure>
+  MeanStd over_seeds(const Measure& measure) const {
+    std::vector<double> values;
+    for (const DvganRun& run : runs) values.push_back(measure(run.evaluation));
+    return mean_spread(values);
+  }
+};
+
+/// The columns of the comparison: a name, and the number of a set of motions and its FID.
+struct AblationColumn {
+  std::string_view name;
+  int decimals = 1;
+  double (*measure)(const MotionSetMeasures& set, double distance);
+};
+inline std::span<const AblationColumn> ablation_columns() {
+  using Set = const MotionSetMeasures&;
+  static constexpr AblationColumn all[] = {
+      {"IS", 2, [](Set s, double) { return s.inception_score; }},
+      {"R@1", 1, [](Set s, double) { return s.retrieval.recall[0]; }},
+      {"R@3", 1, [](Set s, double) { return s.retrieval.recall[1]; }},
+      {"R@5", 1, [](Set s, double) { return s.retrieval.recall[2]; }},
+      {"R@10", 1, [](Set s, double) { return s.retrieval.recall[3]; }},
+      {"FID", 3, [](Set, double d) { return d; }},
+      {"diversity", 3, [](Set s, double) { return s.diversity; }},
+      {"multimodality", 3, [](Set s, double) { return s.multimodality; }}};
+  return all;
+}
+
+/// The difference b - a of a number, run by run of equal seeds: what the spread of a single row hides.
+/// A count of 0 where no seed is in both.
+template <class Measure>
+MeanStd paired_difference(const DvganAblationRow& a, const DvganAblationRow& b, const Measure& measure) {
+  std::vector<double> differences;
+  for (const DvganRun& x : a.runs)
+    for (const DvganRun& y : b.runs)
+      if (x.seed == y.seed) differences.push_back(measure(y.evaluation) - measure(x.evaluation));
+  return differences.empty() ? MeanStd{} : mean_spread(differences);
+}
+
+}  // namespace motiongan

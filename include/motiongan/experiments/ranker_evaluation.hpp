@@ -1,0 +1,65 @@
+// A ranker on clips that it was not trained on (Lin & Amer, Table 1; SPEC 7).
+#pragma once
+#include "motiongan/metrics/inception_score.hpp"
+#include "motiongan/metrics/retrieval.hpp"
+#include "motiongan/models/ranker.hpp"
+#include "motiongan/data/descriptions.hpp"
+
+namespace motiongan {
+
+struct RankerEvaluationOptions {
+  std::size_t descriptions = 250;    ///< K: the most popular ones of the test clips, or all there are
+  std::size_t windows_per_clip = 8;  ///< evenly spread; a clip counts as much as any other
+};
+
+/// Real windows and what they are: of the test clips that have one of the K descriptions.
+struct RealWindows {
+  motion::Descriptions descriptions;            ///< of the test clips, K of them
+  std::vector<motion::Motion> motions;          ///< windows_per_clip of each clip
+  std::vector<std::vector<std::size_t>> right;  ///< the descriptions that are right for each
+  std::size_t clips = 0;                        ///< how many they are of
+};
+
+/// Error if there are no test clips or windows were not asked for.
+inline RealWindows real_windows(const motion::Dataset& data, const RankerEvaluationOptions& options = {}) {
+  require(!data.test.empty(), "there are no test clips to evaluate on; lower the training share");
+  require(options.descriptions > 0 && options.windows_per_clip > 0, "an evaluation over ",
+          options.descriptions, " descriptions with ", options.windows_per_clip,
+          " windows a clip, expected at least 1 of both");
+  RealWindows out;
+  out.descriptions = motion::distinct_descriptions(data.test).most_popular(options.descriptions);
+  std::vector<float> window(data.format.frames * data.format.dof());
+  for (std::size_t c = 0; c < data.test.size(); ++c) {
+    if (out.descriptions.of_clip[c].empty()) continue;
+    ++out.clips;
+    const std::size_t starts = data.starts(data.test[c]), count = options.windows_per_clip;
+    for (std::size_t i = 0; i < count; ++i) {
+      data.window(data.test[c], count == 1 ? starts / 2 : i * (starts - 1) / (count - 1), window);
+      out.motions.push_back(data.to_motion(window));
+      out.right.push_back(out.descriptions.of_clip[c]);
+    }
+  }
+  return out;
+}
+
+struct RankerEvaluation {
+  RealWindows real;
+  std::vector<float> features;  ///< of the windows, [n, k], of length 1
+  std::vector<float> scores;    ///< [n, K]
+  Retrieval retrieval;
+  double inception_score = 0;  ///< of the real windows, nats
+};
+
+/// How well the ranker finds the descriptions of the test clips.
+inline RankerEvaluation evaluate_ranker(const Ranker& ranker, const motion::Dataset& data,
+                                        const RankerEvaluationOptions& options = {}) {
+  RankerEvaluation out;
+  out.real = real_windows(data, options);
+  out.features = ranker.features(out.real.motions);
+  out.scores = ranker.scores(out.features, out.real.descriptions.texts);
+  out.retrieval = retrieval(out.scores, out.real.descriptions.size(), out.real.right);
+  out.inception_score = inception_score(out.scores, out.real.descriptions.size());
+  return out;
+}
+
+}  // namespace motiongan

@@ -1,0 +1,190 @@
+// Joint positions as comma-separated text, one frame a line.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "motiongan/core/error.hpp"
+#include "motiongan/formats/bone_list.hpp"
+#include "motiongan/motion/motion.hpp"
+#include "motiongan/motion/position_clip.hpp"
+
+namespace motiongan::motion {
+
+namespace position_csv_detail {
+
+/// The next line of `text`, without its end; takes it off.
+inline std::string_view take_line(std::string_view& text) {
+  std::string_view line = text.substr(0, text.find('\n'));
+  text.remove_prefix(std::min(text.size(), line.size() + 1));
+  if (line.ends_with('\r')) line.remove_suffix(1);
+  return line;
+}
+
+/// The fields between the commas of `line`, without blanks at their ends.
+inline void split_fields(std::string_view line, std::vector<std::string_view>& out) {
+  out.clear();
+  for (std::size_t at = 0;;) {
+    const std::size_t comma = std::min(line.find(',', at), line.size());
+    std::string_view field = line.substr(at, comma - at);
+    const std::size_t first = field.find_first_not_of(" \t");
+    out.push_back(first == field.npos ? std::string_view()
+                                      : field.substr(first, field.find_last_not_of(" \t") - first + 1));
+    if (comma == line.size()) return;
+    at = comma + 1;
+  }
+}
+
+/// What the columns of a position file hold: where each goes in a frame of [joints, 3].
+struct CsvColumns {
+  bool time = false;               ///< the first column is the time in seconds
+  std::vector<std::size_t> place;  ///< [columns without time], 3 * joint + axis
+};
+
+/// Error `name:1: ...` where a column is no joint's, comes twice, or one is missing.
+inline CsvColumns parse_csv_header(const std::vector<std::string_view>& fields, const Skeleton& skeleton,
+                                   std::string_view name) {
+  CsvColumns out;
+  out.time = fields.front() == "time";
+  std::vector<char> seen(3 * skeleton.size(), 0);
+  for (std::size_t i = out.time ? 1 : 0; i < fields.size(); ++i) {
+    const std::string_view field = fields[i];
+    // A joint's name may hold a dot itself, so the axis stands after the last one.
+    const std::size_t dot = field.rfind('.');
+    const std::string_view axis = dot == field.npos ? std::string_view() : field.substr(dot + 1);
+    require(axis == "x" || axis == "y" || axis == "z", name, ":1: column ", i + 1, " is called '", field,
+            "', expected a joint's name and .x, .y or .z as in Hips.x (the first column may be time)");
+    const int joint = skeleton.find(field.substr(0, dot));
+    require(joint >= 0, name, ":1: column ", i + 1, " is of joint '", field.substr(0, dot),
+            "', which the bone list does not have");
+    const std::size_t place =
+        3 * static_cast<std::size_t>(joint) + static_cast<std::size_t>(axis.front() - 'x');
+    require(!seen[place], name, ":1: the column '", field, "' comes twice");
+    seen[place] = 1;
+    out.place.push_back(place);
+  }
+  for (std::size_t p = 0; p < seen.size(); ++p)
+    require(seen[p], name, ":1: the column '", skeleton.joints[p / 3].name, ".",
+            static_cast<char>('x' + static_cast<char>(p % 3)),
+            "' is missing; expected x, y and z of every joint in the bone list");
+  return out;
+}
+
+/// Frames per second of times in seconds; Error `name: ...` where they are not even. `lines` [frames] are the
+/// lines that they stand in.
+inline double rate_from_times(const std::vector<double>& times, const std::vector<std::size_t>& lines,
+                              std::string_view name) {
+  const double step = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
+  require(step > 0, name, ": the times go from ", times.front(), " to ", times.back(),
+          " s; expected them to grow");
+  // Times are often rounded to a millisecond, so a tenth of a frame is let pass; a lost frame is more.
+  for (std::size_t f = 0; f < times.size(); ++f)
+    require(std::abs(times[f] - (times.front() + step * static_cast<double>(f))) <= 0.1 * step, name, ":",
+            lines[f], ": the time is ", times[f], " s, expected ",
+            times.front() + step * static_cast<double>(f),
+            " s from even frames; resample the file to a constant rate");
+  return rate_from_frame_time(step);
+}
+
+}  // namespace position_csv_detail
+
+/// Reads text whose first line names the columns (`Hips.x,Hips.y,Hips.z,...`: x, y and z of every joint of
+/// `skeleton`, joints in any order) and whose other lines are frames. With a first column `time` (seconds)
+/// the rate is taken from it, otherwise it is `rate`, in frames per second. Positions are in the world, y up,
+/// in the file's unit. Names and parents come from `skeleton`, offsets from the positions (with_offsets_of).
+/// Errors are `name:line: ...`: columns, numbers of fields, numbers that are not finite, uneven times.
+inline PositionClip parse_position_csv(std::string_view text, const Skeleton& skeleton, double rate,
+                                       std::string_view name) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  std::vector<std::string_view> fields;
+  position_csv_detail::split_fields(position_csv_detail::take_line(text), fields);
+  const position_csv_detail::CsvColumns columns =
+      position_csv_detail::parse_csv_header(fields, skeleton, name);
+  const std::size_t width = fields.size(), shift = columns.time ? 1 : 0;
+
+  PositionClip out;
+  std::vector<double> times;
+  std::vector<std::size_t> lines;
+  for (std::size_t line = 2; !text.empty(); ++line) {
+    const std::string_view raw = position_csv_detail::take_line(text);
+    if (raw.find_first_not_of(" \t") == raw.npos) continue;
+    position_csv_detail::split_fields(raw, fields);
+    require(fields.size() == width, name, ":", line, ": found ", fields.size(), " fields, expected ", width,
+            " as in the first line");
+    const std::size_t frame = out.positions.size();
+    out.positions.resize(frame + skeleton.size());
+    for (std::size_t i = 0; i < width; ++i) {
+      const std::string_view field = fields[i].substr(fields[i].starts_with('+') ? 1 : 0);
+      const std::size_t place = i < shift ? 0 : columns.place[i - shift];
+      double value = 0;
+      const auto [stop, problem] = std::from_chars(field.data(), field.data() + field.size(), value);
+      const bool number = problem == std::errc() && stop == field.data() + field.size();
+      if (!number || !std::isfinite(value))
+        throw Error(name, ":", line, ": found '", fields[i].substr(0, 40), "' in column ", i + 1, " (",
+                    i < shift ? std::string("time") : "joint '" + skeleton.joints[place / 3].name + "'",
+                    "), expected a finite number with a decimal point");
+      if (i < shift)
+        times.push_back(value);
+      else
+        out.positions[frame + place / 3][place % 3] = value;
+    }
+    lines.push_back(line);
+  }
+  out.frames = lines.size();
+  require(out.frames > 0, name, ": found no frames below the first line, expected one a line");
+  out.rate = times.size() > 1 ? position_csv_detail::rate_from_times(times, lines, name) : rate;
+  require(std::isfinite(out.rate) && out.rate > 0, name, ": the rate is given as ", rate,
+          " frames per second and the file has no times; give a rate above 0, or a first column 'time' in "
+          "seconds");
+  out.skeleton = with_offsets_of(skeleton, out.positions);
+  return out;
+}
+
+/// Error unless the clip's numbers can be written: sizes fit, everything finite, rate above 0.
+inline void check_writable(const PositionClip& clip) {
+  const std::size_t joints = clip.skeleton.size();
+  require(joints > 0 && clip.positions.size() == clip.frames * joints, "clip '", clip.id, "' has ",
+          clip.positions.size(), " positions, expected ", clip.frames, " frames x ", joints, " joints");
+  require(std::isfinite(clip.rate) && clip.rate > 0, "clip '", clip.id, "' has a rate of ", clip.rate,
+          " frames per second, expected more than 0");
+  for (std::size_t i = 0; i < clip.positions.size(); ++i)
+    for (const double v : clip.positions[i])
+      require(std::isfinite(v), "clip '", clip.id, "', frame ", i / joints + 1, ", joint '",
+              clip.skeleton.joints[i % joints].name, "': found ", v, ", expected a finite number");
+}
+
+/// The clip as text that parse_position_csv reads: a column `time`, then x, y, z of every joint. Numbers are
+/// rounded to single precision and written in the fewest digits that keep it. Error for names that a column
+/// cannot hold (a comma, a line end).
+inline std::string format_position_csv(const PositionClip& clip) {
+  check_writable(clip);
+  std::string out = "time";
+  for (const Joint& j : clip.skeleton.joints) {
+    require(j.name.find_first_of(",\r\n") == j.name.npos, "a joint called '", j.name,
+            "' cannot be written as CSV: a name may not hold a comma or a line end");
+    for (const char axis : {'x', 'y', 'z'}) out.append(",").append(j.name).append(".") += axis;
+  }
+  out += '\n';
+  std::array<char, 64> digits{};
+  const auto append = [&](auto value) {
+    out.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+  };
+  for (std::size_t f = 0; f < clip.frames; ++f) {
+    append(std::round(static_cast<double>(f) / clip.rate * 1e9) / 1e9);
+    for (std::size_t j = 0; j < clip.skeleton.size(); ++j)
+      for (const double v : clip.positions[f * clip.skeleton.size() + j]) {
+        out += ',';
+        append(static_cast<float>(v) + 0.0F);  // no -0
+      }
+    out += '\n';
+  }
+  return out;
+}
+
+}  // namespace motiongan::motion

@@ -1,0 +1,188 @@
+// Whether feet slide over the floor that they should stand on.
+#pragma once
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "motiongan/core/error.hpp"
+#include "motiongan/motion/body_side.hpp"
+#include "motiongan/motion/kinematics.hpp"
+#include "motiongan/metrics/statistics_measure.hpp"
+
+namespace motiongan {
+
+struct FootSkateOptions {
+  std::vector<std::string> feet = {};  ///< names of joints; empty: found by find_feet
+  double unit_metres = 0;              ///< size of the file's unit; 0: not known, a leg is taken for a metre
+  double height = 0.05;                ///< metres above the floor: lower feet stand on it
+  double speed = 0.5;                  ///< metres per second over the ground: faster feet slide
+  double seconds = 0.25;               ///< the mean speed over that long must be above `speed` too
+  std::optional<double> floor = {};    ///< height of the floor in the file's unit; not set: that of the feet
+  double floor_percentile = 0.05;      ///< share of the feet's heights that lie below the floor then
+};
+
+/// What was found of the feet; of several motions with +=.
+struct FootSkate {
+  std::size_t steps = 0;    ///< from one frame to the next
+  std::size_t sliding = 0;  ///< steps in which a foot slides
+  std::size_t contact = 0;  ///< steps in which a foot is near the floor
+
+  /// The foot-skate ratio, 0 .. 1; 0 where no foot is ever near the floor: look at contact_share() too.
+  double ratio() const { return steps > 0 ? static_cast<double>(sliding) / static_cast<double>(steps) : 0; }
+  double contact_share() const {
+    return steps > 0 ? static_cast<double>(contact) / static_cast<double>(steps) : 0;
+  }
+  FootSkate& operator+=(const FootSkate& other) {
+    steps += other.steps, sliding += other.sliding, contact += other.contact;
+    return *this;
+  }
+};
+
+namespace foot_skate_detail {
+
+inline std::string joint_names(const motion::Skeleton& skeleton) {
+  std::string all;
+  for (const motion::Joint& joint : skeleton.joints) all += (all.empty() ? "" : ", ") + joint.name;
+  return all;
+}
+
+/// A left and a right foot, or nothing.
+inline std::vector<std::size_t> feet_by_name(const motion::Skeleton& skeleton) {
+  std::vector<std::string> names;
+  for (const motion::Joint& joint : skeleton.joints) {
+    std::string& name = names.emplace_back(joint.name);
+    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  for (const std::string_view part : {"toe", "foot", "ankle"}) {
+    std::optional<std::size_t> left, right;
+    for (std::size_t j = 0; j < names.size(); ++j) {
+      if (names[j].find(part) == std::string::npos) continue;
+      const motion::Side side = motion::side_of(skeleton.joints[j].name);
+      if (side == motion::Side::left && !left) left = j;
+      if (side == motion::Side::right && !right) right = j;
+    }
+    if (left && right) return {*left, *right};
+  }
+  return {};
+}
+
+}  // namespace foot_skate_detail
+
+/// Whether find_feet(skeleton) finds any.
+inline bool has_feet(const motion::Skeleton& skeleton) {
+  return !foot_skate_detail::feet_by_name(skeleton).empty();
+}
+
+/// The feet of a skeleton by their joints' names: the first toe ("LeftToeBase", "Toes_L"), or else foot, or
+/// else ankle of each side. Error, with the names that there are, where none are found.
+inline std::vector<std::size_t> find_feet(const motion::Skeleton& skeleton) {
+  std::vector<std::size_t> feet = foot_skate_detail::feet_by_name(skeleton);
+  require(
+      !feet.empty(),
+      "no joints are called by a side and toe, foot or ankle (such as LeftToeBase, Toes_L); name the feet "
+      "yourself, as two of: ",
+      foot_skate_detail::joint_names(skeleton));
+  return feet;
+}
+
+/// Joints by the names that options give, or find_feet. Error for a name that is not there.
+inline std::vector<std::size_t> find_feet(const motion::Skeleton& skeleton,
+                                          std::span<const std::string> names) {
+  if (names.empty()) return find_feet(skeleton);
+  std::vector<std::size_t> out;
+  for (const std::string& name : names) {
+    const int at = skeleton.find(name);
+    require(at >= 0, "there is no joint '", name,
+            "' to be a foot; the skeleton has: ", foot_skate_detail::joint_names(skeleton));
+    out.push_back(static_cast<std::size_t>(at));
+  }
+  return out;
+}
+
+/// Length of a leg in the file's unit: from the joint that all feet hang on down to each foot, along the
+/// bones at rest, mean over feet. Error where that has no length.
+inline double leg_length(const motion::Skeleton& skeleton, std::span<const std::size_t> feet) {
+  std::vector<std::size_t> below(skeleton.size(), 0);  // feet that hang on each joint
+  for (const std::size_t foot : feet)
+    for (int j = static_cast<int>(foot); j >= 0; j = skeleton.joints[static_cast<std::size_t>(j)].parent)
+      ++below[static_cast<std::size_t>(j)];
+  double sum = 0;
+  for (const std::size_t foot : feet)
+    for (std::size_t j = foot; skeleton.joints[j].parent >= 0;
+         j = static_cast<std::size_t>(skeleton.joints[j].parent)) {
+      if (feet.size() > 1 && below[j] == feet.size()) break;
+      sum += motion::length(skeleton.joints[j].offset);
+    }
+  require(sum > 0, "the legs of the skeleton have no length; give the size of the file's unit in metres");
+  return sum / static_cast<double>(feet.size());
+}
+
+/// Foot skating, as Karunratanakul et al. 2023 (GMD) and Xie et al. 2024 (OmniControl) measure it: the share
+/// of steps from a frame to the next in which a foot is near the floor (below 5 cm) in both frames, moves
+/// over the ground (x and z) faster than 0.5 m/s, and also does so on average over the 0.25 s around (theirs:
+/// 5 steps at 20 per second; what lies beyond the motion's ends counts as 0, as in their code).
+///
+/// Theirs is motion in metres with the floor at 0. Here the floor is the 5th percentile of the heights of
+/// the feet in this motion, and a file's unit that is not known is found by taking a leg for a metre. So a
+/// motion that flies or hangs stands on air, and what it does there is measured; and the quicker a foot is
+/// between two frames the less is seen of it: compare motions of one rate. Real motion does not have 0: feet
+/// roll and are set down in motion. A motion whose root has no track slides wherever it walks.
+///
+/// `positions` are [frames, joints] in the world, y up. Error if sizes do not fit, for fewer than 2 frames,
+/// and where there are no feet.
+inline FootSkate foot_skate(const motion::Skeleton& skeleton, std::span<const motion::Vec3> positions,
+                            double rate, const FootSkateOptions& options = {}) {
+  const std::size_t joints = skeleton.size();
+  require(joints > 0 && positions.size() % joints == 0 && positions.size() >= 2 * joints, "found ",
+          positions.size(), " positions, expected at least two whole frames of ", joints, " joints");
+  require(
+      rate > 0 && options.unit_metres >= 0 && options.height > 0 && options.speed > 0 && options.seconds > 0,
+      "found a rate of ", rate, ", a unit of ", options.unit_metres, " m, a height of ", options.height,
+      " m, a speed of ", options.speed, " m/s and a time of ", options.seconds,
+      " s to measure feet by; expected more than 0 (a unit that is not known: 0)");
+  const std::vector<std::size_t> feet = find_feet(skeleton, options.feet);
+  const double metre = 1 / (options.unit_metres > 0 ? options.unit_metres : 1 / leg_length(skeleton, feet));
+  const std::size_t frames = positions.size() / joints, steps = frames - 1;
+  double floor = options.floor.value_or(0);
+  if (!options.floor) {
+    std::vector<double> heights;
+    for (std::size_t f = 0; f < frames; ++f)
+      for (const std::size_t j : feet) heights.push_back(positions[f * joints + j][1]);
+    floor = motion::percentile(std::move(heights), options.floor_percentile);
+  }
+  // An odd number of steps, so that the window lies evenly about its own.
+  const auto reach = static_cast<std::size_t>(std::max(0.0, std::round((options.seconds * rate - 1) / 2)));
+
+  std::vector<char> slides(steps, 0), stands(steps, 0);
+  std::vector<double> speeds(steps);
+  for (const std::size_t j : feet) {
+    const auto at = [&](std::size_t f) -> const motion::Vec3& { return positions[f * joints + j]; };
+    for (std::size_t f = 0; f < steps; ++f)
+      speeds[f] = std::hypot(at(f + 1)[0] - at(f)[0], at(f + 1)[2] - at(f)[2]) * rate;
+    const auto is_low = [&](std::size_t f) { return at(f)[1] - floor < options.height * metre; };
+    for (std::size_t f = 0; f < steps; ++f) {
+      if (!is_low(f) || !is_low(f + 1)) continue;
+      stands[f] = 1;
+      double mean = 0;
+      for (std::size_t g = f - std::min(f, reach); g <= std::min(f + reach, steps - 1); ++g)
+        mean += speeds[g] / static_cast<double>(2 * reach + 1);
+      if (speeds[f] > options.speed * metre && mean > options.speed * metre) slides[f] = 1;
+    }
+  }
+  return {steps, static_cast<std::size_t>(std::count(slides.begin(), slides.end(), 1)),
+          static_cast<std::size_t>(std::count(stands.begin(), stands.end(), 1))};
+}
+
+/// The same of a motion, by forward kinematics.
+inline FootSkate foot_skate(const motion::Motion& motion, const FootSkateOptions& options = {}) {
+  return foot_skate(motion.skeleton, motion::joint_positions(motion), motion.rate, options);
+}
+
+}  // namespace motiongan

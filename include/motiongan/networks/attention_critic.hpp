@@ -1,0 +1,72 @@
+// The critic of the attention WGAN-GP (Malek-Podjaski & Deligianni; SPEC 5): a score for a prior and the
+// future that is said to follow it, joined in time.
+#pragma once
+#include "motiongan/networks/attention_block.hpp"
+
+namespace motiongan {
+
+struct AttentionCriticOptions {
+  std::size_t dof = 0;       ///< numbers of a pose
+  std::size_t hidden = 256;  ///< C
+  std::size_t classes = 0;   ///< Y where the critic is told the class; 0: it is not, as in the paper
+  bool attention = true;
+};
+
+class AttentionCritic {
+ public:
+  AttentionCritic(Initializer init, const AttentionCriticOptions& options) : options_(options) {
+    require(options.dof > 0 && options.hidden > 0, "AttentionCritic: dof and hidden must be positive");
+    encode_ = Conv1d(init, options.dof + options.classes, options.hidden, 3);
+    block0_ = Residual(init, options.hidden, 3);
+    if (options.attention) attention_ = SelfAttention(init, options.hidden);
+    block1_ = Residual(init, options.hidden, 3);
+    block2_ = Residual(init, options.hidden, 3);
+    score_ = Linear(init, options.hidden, 1);
+  }
+
+  const AttentionCriticOptions& options() const { return options_; }
+
+  /// One score per sample, [B], of motion [2T, B, dof]; `classes` [B, Y] where the options ask for them.
+  Var operator()(const Var& motion, const Var& classes = {}) const {
+    const Var h = residual_block_down(block1_, attend(attention_, before_attention(motion, classes)));
+    return reshape(score_(mean(residual_block(block2_, h, true), 0)), {motion.dim(1)});
+  }
+
+  /// How much each of the T frames after the first Down takes from each, [B, T, T]; Error where there is
+  /// none.
+  Var attention_map(const Var& motion, const Var& classes = {}) const {
+    require(attention_.has_value(), "the critic was made without attention: there is no map of it");
+    return attention_->map(before_attention(motion, classes));
+  }
+
+  const std::optional<SelfAttention>& attention() const { return attention_; }
+
+  void list_parameters(ParameterList& list) {
+    list.add_module("encode", encode_);
+    list.add_module("block.0", block0_);
+    if (attention_) list.add_module("attention", *attention_);
+    list.add_module("block.1", block1_);
+    list.add_module("block.2", block2_);
+    list.add_module("score", score_);
+  }
+
+ private:
+  Var before_attention(const Var& motion, const Var& classes) const {
+    require(motion.value().rank() == 3 && motion.dim(2) == options_.dof && motion.dim(0) >= 4,
+            "AttentionCritic: motion ", motion.shape(), ", expected [4 or more frames, batch, ", options_.dof,
+            "]");
+    require(classes.empty() ? options_.classes == 0 : classes.dim(1) == options_.classes,
+            "AttentionCritic: ", classes.empty() ? 0 : classes.dim(1), " classes, expected ",
+            options_.classes);
+    return residual_block_down(block0_,
+                               encode_(classes.empty() ? motion : with_constant_channels(motion, classes)));
+  }
+
+  AttentionCriticOptions options_;
+  Conv1d encode_;
+  Residual block0_, block1_, block2_;
+  std::optional<SelfAttention> attention_;
+  Linear score_;
+};
+
+}  // namespace motiongan

@@ -1,0 +1,77 @@
+// The generator of the attention WGAN-GP (Malek-Podjaski & Deligianni; SPEC 5): one second of motion and a
+// class in, the next second out.
+#pragma once
+#include "motiongan/networks/attention_block.hpp"
+
+namespace motiongan {
+
+struct AttentionGeneratorOptions {
+  std::size_t dof = 0;        ///< numbers of a pose
+  std::size_t classes = 0;    ///< Y
+  std::size_t hidden = 256;   ///< C
+  std::size_t noise_dim = 0;  ///< numbers of noise beside the class; the paper has none
+  bool attention = true;      ///< false: the paper's ablation
+};
+
+class AttentionGenerator {
+ public:
+  AttentionGenerator(Initializer init, const AttentionGeneratorOptions& options) : options_(options) {
+    require(options.dof > 0 && options.classes > 0 && options.hidden > 0,
+            "AttentionGenerator: dof, classes and hidden must be positive");
+    encode_ = Conv1d(init, options.dof + options.classes + options.noise_dim, options.hidden, 3);
+    block0_ = Residual(init, options.hidden, 3);
+    if (options.attention) attention_ = SelfAttention(init, options.hidden);
+    block1_ = Residual(init, options.hidden, 3);
+    decode_ = Conv1d(init, options.hidden, options.dof, 3);
+  }
+
+  const AttentionGeneratorOptions& options() const { return options_; }
+
+  /// The motion [T, B, dof] that follows the prior [T, B, dof] of class [B, Y] (one-hot), with noise
+  /// [B, noise_dim] where the options ask for some.
+  Var operator()(const Var& prior, const Var& classes, const Var& noise = {}) const {
+    return decode_(
+        residual_block(block1_, attend(attention_, before_attention(prior, classes, noise)), true));
+  }
+
+  /// How much each frame takes from each, [B, T, T]; Error where there is no attention.
+  Var attention_map(const Var& prior, const Var& classes, const Var& noise = {}) const {
+    require(attention_.has_value(), "the generator was made without attention: there is no map of it");
+    return attention_->map(before_attention(prior, classes, noise));
+  }
+
+  /// The layers, for those who run them in their own way.
+  const Conv1d& encode() const { return encode_; }
+  const Residual& block(std::size_t i) const { return i == 0 ? block0_ : block1_; }
+  const std::optional<SelfAttention>& attention() const { return attention_; }
+  const Conv1d& decode() const { return decode_; }
+
+  void list_parameters(ParameterList& list) {
+    list.add_module("encode", encode_);
+    list.add_module("block.0", block0_);
+    if (attention_) list.add_module("attention", *attention_);
+    list.add_module("block.1", block1_);
+    list.add_module("decode", decode_);
+  }
+
+ private:
+  Var before_attention(const Var& prior, const Var& classes, const Var& noise) const {
+    require(prior.value().rank() == 3 && prior.dim(2) == options_.dof && classes.dim(1) == options_.classes,
+            "AttentionGenerator: a prior ", prior.shape(), " and classes ", classes.shape(),
+            ", expected [frames, "
+            "batch, ",
+            options_.dof, "] and [batch, ", options_.classes, "]");
+    require(noise.empty() ? options_.noise_dim == 0 : noise.dim(1) == options_.noise_dim,
+            "AttentionGenerator: noise of ", noise.empty() ? 0 : noise.dim(1), " numbers, expected ",
+            options_.noise_dim);
+    return residual_block(block0_, encode_(with_constant_channels(
+                                       prior, noise.empty() ? classes : concatenate({classes, noise}, 1))));
+  }
+
+  AttentionGeneratorOptions options_;
+  Conv1d encode_, decode_;
+  Residual block0_, block1_;
+  std::optional<SelfAttention> attention_;
+};
+
+}  // namespace motiongan

@@ -1,0 +1,156 @@
+// The attention generator second after second, without a graph (SPEC 5: autoregressive generation).
+#pragma once
+#include "motiongan/networks/attention_generator.hpp"
+
+namespace motiongan {
+
+/// Makes the frames that follow a prior, as AttentionGenerator does, equal to rounding. A sample's motion
+/// does not depend on which others are in the batch, bit for bit on the native engine of gemm().
+///
+/// The generator's weights are read when this is made; after a step of training make it anew. Memory is taken
+/// at the first step and kept as long as frames and batch stay: a step then allocates only its result.
+class AttentionRollout {
+ public:
+  explicit AttentionRollout(const AttentionGenerator& generator)
+      : options_(generator.options()), context_(generator.encode().weight.context()) {
+    const NoGrad values_only;
+    encode_ = convolution(generator.encode().weight, generator.encode().bias);
+    for (std::size_t i : {0u, 1u}) {
+      const Residual& block = generator.block(i);
+      first_[i] = convolution(block.conv1.weight, block.conv1.bias);
+      second_[i] = convolution(block.conv2.weight, block.conv2.bias);
+      first_[i].relu = true;
+    }
+    second_[1].relu = true;
+    decode_ = convolution(generator.decode().weight, generator.decode().bias);
+    if (const auto& attention = generator.attention()) {
+      inner_ = attention->query.out_channels();
+      parts_ = convolution(
+          concatenate({attention->query.weight, attention->key.weight, attention->value.weight}, 1),
+          concatenate({attention->query.bias, attention->key.bias, attention->value.bias}, 0));
+      const auto scaled = [&](const Var& v) { return v * broadcast_to(attention->gamma, v.shape()); };
+      // [inner, hidden]: the kernel goes along the hidden channels.
+      const std::vector<double> by_row = scaled(attention->out.weight).value().to_host<double>();
+      std::vector<double> turned(by_row.size());
+      const std::size_t hidden = options_.hidden;
+      for (std::size_t i = 0; i < turned.size(); ++i) turned[i] = by_row[i % hidden * inner_ + i / hidden];
+      out_weight_ = Tensor::from(context_, {inner_, hidden}, turned);
+      out_bias_ = scaled(attention->out.bias).value();
+    }
+  }
+
+  const AttentionGeneratorOptions& options() const { return options_; }
+
+  /// The next frames [T, B, dof] after a prior [T, B, dof] for classes [B, Y], with noise [B, noise_dim]
+  /// where the generator has some. Feed the result back for motion of any length; classes may change on the
+  /// way.
+  Tensor step(const Tensor& prior, const Tensor& classes, const Tensor& noise = {}) {
+    check(prior, classes, noise);
+    reserve(prior.dim(0), prior.dim(1));
+    const std::size_t rows = frames_ * batch_, noise_count = noise.empty() ? 0 : options_.noise_dim;
+    context_.launch("attention", "rows_with_constants",
+                    LaunchGrid::items(rows * (detail::vectors(context_, options_.dof) + 1)), prior, classes,
+                    noise.empty() ? classes : noise, detail::At{rows_, batch_ * encode_.k}, rows, batch_,
+                    options_.dof, options_.classes, noise_count);
+    gemm(context_, encode_);
+    gemm(context_, first_[0]);
+    gemm(context_, second_[0]);
+    if (inner_ > 0) attend();
+    gemm(context_, first_[1]);
+    gemm(context_, second_[1]);
+    decode_.c = Tensor(context_, {frames_, batch_, options_.dof});
+    gemm(context_, decode_);
+    return std::exchange(decode_.c, {});
+  }
+
+ private:
+  /// A convolution's product but for where it reads and writes. `weight` is [taps, out, in].
+  GemmCall convolution(const Var& weight, const Var& bias) const {
+    const auto kept = [&](const Var& v) {  // what the caller's optimiser does not change
+      Tensor copy(context_, v.shape());
+      detail::copy_tensor(v.value(), copy);
+      return copy;
+    };
+    GemmCall call{.n = weight.dim(1), .k = weight.dim(2), .b = kept(weight)};
+    call.a_ld = call.b_ld = call.k, call.c_ld = call.n;
+    call.b_transposed = true;
+    call.segments = weight.dim(0);
+    for (std::size_t s = 0; s < call.segments; ++s) call.b_offset[s] = s * call.n * call.k;
+    call.bias = kept(bias);
+    call.b_panels = pack_b(context_, call);
+    return call;
+  }
+
+  void check(const Tensor& prior, const Tensor& classes, const Tensor& noise) const {
+    require(prior.rank() == 3 && prior.dim(2) == options_.dof && prior.size() > 0,
+            "AttentionRollout: a prior ", prior.shape(), ", expected [frames, batch, ", options_.dof, "]");
+    require(classes.shape() == Shape{prior.dim(1), options_.classes}, "AttentionRollout: classes ",
+            classes.shape(), ", expected ", Shape{prior.dim(1), options_.classes});
+    require(
+        noise.empty() ? options_.noise_dim == 0 : noise.shape() == Shape{prior.dim(1), options_.noise_dim},
+        "AttentionRollout: noise ", noise.shape(), ", expected ", Shape{prior.dim(1), options_.noise_dim},
+        options_.noise_dim == 0 ? ": the generator takes none, leave it out" : "");
+  }
+
+  /// Memory for this many frames and samples. What a convolution of three taps reads has a frame of zeros
+  /// before and after, so that every frame is one product with the same taps.
+  void reserve(std::size_t frames, std::size_t batch) {
+    if (frames == frames_ && batch == batch_) return;
+    const std::size_t hidden = options_.hidden, rows = frames * batch;
+    const auto padded = [&](std::size_t width) { return full(context_, {frames + 2, batch, width}, 0); };
+    rows_ = padded(encode_.k);
+    rectified_ = padded(hidden);
+    between_ = padded(hidden);
+    state_ = Tensor(context_, {rows, hidden});
+    other_ = Tensor(context_, {rows, hidden});
+    const auto place = [&](GemmCall& call, const Tensor& from, const Tensor& to, std::size_t to_first) {
+      call.m = rows, call.a = from, call.c = to, call.c_offset = to_first;
+      for (std::size_t s = 0; s < call.segments; ++s) call.a_offset[s] = s * batch * call.k;
+    };
+    const auto add = [&](GemmCall& call, const Tensor& residual) {
+      call.residual = residual, call.residual_ld = hidden;
+    };
+    place(encode_, rows_, state_, 0);
+    const auto rectify = [&](GemmCall& call) {
+      call.rectified = rectified_, call.rectified_offset = batch * hidden;
+    };
+    rectify(encode_);
+    if (inner_ == 0) rectify(second_[0]);  // else the attention does
+    for (GemmCall& call : first_) place(call, rectified_, between_, batch * hidden);
+    place(second_[0], between_, other_, 0);
+    add(second_[0], state_);
+    if (inner_ > 0) {
+      parts_to_ = Tensor(context_, {rows, 3 * inner_});
+      place(parts_, other_, parts_to_, 0);
+      // Pieces of a sample's frames, so that few samples keep all cores busy.
+      const std::size_t groups = 4 * context_.device().compute_units;
+      pieces_ = std::clamp<std::size_t>((groups + batch - 1) / batch, 1, frames);
+      scratch_ = Tensor(context_, {pieces_, batch, frames + inner_});
+    }
+    place(second_[1], between_, rectified_, batch * hidden);
+    add(second_[1], inner_ > 0 ? state_ : other_);
+    place(decode_, rectified_, {}, 0);
+    frames_ = frames, batch_ = batch;
+  }
+
+  void attend() {
+    gemm(context_, parts_);
+    const std::size_t rows = (frames_ + pieces_ - 1) / pieces_;
+    context_.launch("attention", "attend_frames", LaunchGrid::groups(batch_, (frames_ + rows - 1) / rows), parts_to_,
+                    scratch_, other_, out_weight_, out_bias_, state_,
+                    detail::At{rectified_, batch_ * options_.hidden}, frames_, batch_, inner_,
+                    options_.hidden, rows);
+  }
+
+  AttentionGeneratorOptions options_;
+  Context context_;
+  GemmCall encode_, decode_, parts_;
+  std::array<GemmCall, 2> first_, second_;  // of the two residual blocks
+  std::size_t inner_ = 0;                   // channels of query, key and value; 0: no attention
+  std::size_t frames_ = 0, batch_ = 0, pieces_ = 1;
+  Tensor rows_, rectified_, between_;  // [frames + 2, batch, channels], first and last frame zero
+  Tensor state_, other_;               // [frames * batch, hidden]
+  Tensor parts_to_, scratch_, out_weight_, out_bias_;
+};
+
+}  // namespace motiongan

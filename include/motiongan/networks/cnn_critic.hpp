@@ -1,0 +1,99 @@
+// The CNN critic of DVGAN with dense validation at every time scale (Lin & Amer, eq. 6; SPEC 3).
+#pragma once
+#include <optional>
+#include <string_view>
+
+#include "motiongan/networks/cnn_trunk.hpp"
+#include "motiongan/networks/validate.hpp"
+#include "motiongan/nn/text_encoder.hpp"
+
+namespace motiongan {
+
+/// Which time scales the critic judges: all of them, every second one, or only the coarsest.
+enum class Validation { dense, mod2, final };
+/// How the levels' scores are weighted: exp(w_i), or a softmax over w.
+enum class LevelWeights { exp, softmax };
+
+struct CnnCriticOptions {
+  std::size_t vocabulary = 0;  ///< words
+  std::size_t dof = 0;         ///< numbers of a pose, M
+  std::size_t frames = 32;     ///< N, a power of two
+  std::size_t hidden = 256;    ///< k
+  std::size_t taps = 3;        ///< of the convolutions: 3 or 5
+  Validation validation = Validation::dense;
+  LevelWeights level_weights = LevelWeights::exp;
+};
+
+class CnnCritic {
+ public:
+  CnnCritic(Initializer init, const CnnCriticOptions& options)
+      : options_(options), levels_(levels_of(options.frames)) {
+    require(options.vocabulary > 0 && options.dof > 0 && options.hidden > 0,
+            "CnnCritic: vocabulary, dof and hidden must be positive");
+    text_ = TextEncoder(init, options.vocabulary, options.hidden);
+    trunk_ = CnnTrunk(init, options.dof, options.frames, options.hidden, options.taps);
+    std::size_t validated = 0;
+    for (std::size_t i = 0; i <= levels_; ++i) {
+      validate_.emplace_back();
+      if (!is_validated(i)) continue;
+      validate_.back() = Validate(init, options.hidden);
+      ++validated;
+    }
+    // exp(w) starts convex: every level counts 1/n.
+    level_weight_ = init.constant({validated}, -std::log(static_cast<double>(validated)));
+  }
+
+  const CnnCriticOptions& options() const { return options_; }
+
+  /// [B, k]; computed once a step, it serves real, fake and mixed motion alike.
+  Var encode_text(const Sentences& text) const { return text_(text); }
+
+  /// One score per sample, [B], of motion [N, B, M] with encoded text [B, k].
+  Var operator()(const Var& motion, const Var& h_txt) const {
+    require(motion.dim(0) == options_.frames && motion.dim(2) == options_.dof, "CnnCritic: motion ",
+            motion.shape(), ", expected [", options_.frames, ", batch, ", options_.dof, "]");
+    const std::size_t batch = motion.dim(1);
+    const Var text = reshape(h_txt, {1, batch, options_.hidden});
+    Var h = CnnTrunk::with_ones(motion);
+    const Var encode = trunk_.encoding();
+    std::vector<Var> scores;  // from the finest validated level to the coarsest
+    for (std::size_t i = levels_ + 1; i-- > 0;) {
+      const bool finest = i == levels_;
+      if (!finest) h = trunk_.halve(i, h, encode);
+      if (is_validated(i)) {
+        const Validate& v = validate_[i];
+        scores.push_back(
+            v(h, text, finest ? CnnTrunk::after(v.motion, encode) : v.motion.weight, v.motion.bias));
+      }
+    }
+    std::reverse(scores.begin(), scores.end());
+    const std::size_t n = scores.size();
+    const Var each = reshape(concatenate(scores, 2), {batch, n});
+    const Var weights =
+        options_.level_weights == LevelWeights::exp ? exp(level_weight_) : softmax(level_weight_);
+    return reshape(matmul(each, reshape(weights, {n, 1})), {batch});
+  }
+
+  void list_parameters(ParameterList& list) {
+    list.add_module("text", text_);
+    trunk_.list_parameters(list);
+    for (std::size_t i = 0; i <= levels_; ++i)
+      if (is_validated(i)) list.add_module("validate." + std::to_string(i), validate_[i]);
+    list.add("level_weight", level_weight_);
+  }
+
+ private:
+  bool is_validated(std::size_t level) const {
+    return options_.validation == Validation::dense ||
+           (options_.validation == Validation::mod2 && level % 2 == 0) || level == 0;
+  }
+
+  CnnCriticOptions options_;
+  std::size_t levels_;
+  TextEncoder text_;
+  CnnTrunk trunk_;
+  std::vector<Validate> validate_;  // by level; unused where a level is not validated
+  Var level_weight_;
+};
+
+}  // namespace motiongan

@@ -1,0 +1,73 @@
+// The way of the CNN critic and the CNN ranker from a motion to its coarsest time scale (Lin & Amer, eq. 6
+// and 8; SPEC 3, 7).
+#pragma once
+#include "motiongan/networks/residual.hpp"
+#include "motiongan/ops/matmul.hpp"
+
+namespace motiongan {
+
+/// `encode`, then residual steps, each of which halves the frames: level `levels()` has N of them, level 0
+/// one.
+///
+/// The finest level is encode(motion), which is linear and so are the layers that see it: they take the
+/// motion itself by the product of their weights with encode's. A pose has fewer numbers than a hidden state,
+/// and the largest of all activations need not exist. A channel of ones carries encode's bias, also through
+/// the zero padding.
+class CnnTrunk {
+ public:
+  CnnTrunk() = default;
+  /// N is a power of two.
+  CnnTrunk(Initializer& init, std::size_t dof, std::size_t frames, std::size_t hidden, std::size_t taps_count)
+      : encode_(init, dof, hidden) {
+    const std::size_t levels = levels_of(frames);
+    for (std::size_t i = 0; i < levels; ++i) residual_.emplace_back(init, hidden, taps_count);
+  }
+
+  std::size_t levels() const { return residual_.size(); }
+
+  /// The motion [N, B, M] with a channel of ones, [N, B, M + 1]: what encoding() applies to.
+  static Var with_ones(const Var& motion) {
+    return concatenate({motion, ones(motion.context(), {motion.dim(0), motion.dim(1), 1})}, 2);
+  }
+
+  /// Weight and bias of `encode` side by side, [k, M + 1].
+  Var encoding() const {
+    const std::size_t out = encode_.weight.dim(1), in = encode_.weight.dim(2);
+    return concatenate({reshape(encode_.weight, {out, in}), reshape(encode_.bias, {out, 1})}, 1);
+  }
+
+  /// The weights of `conv` after encoding(): [taps, out, M + 1].
+  static Var after(const Conv1d& conv, const Var& encoding) {
+    const std::size_t count = conv.weight.dim(0), out = conv.weight.dim(1), k = conv.weight.dim(2);
+    return reshape(matmul(reshape(conv.weight, {count * out, k}), encoding), {count, out, encoding.dim(1)});
+  }
+
+  /// From level i + 1 to level i: Down(h) + conv2(ReLU(Down(conv1(h)))), half the frames. From the finest
+  /// level, h is with_ones(motion), and `encoding` what is yet to be applied to it.
+  Var halve(std::size_t i, const Var& h, const Var& encoding) const {
+    const Residual& r = residual_[i];
+    const bool finest = i + 1 == levels();
+    const std::size_t frames = h.dim(0), half = frames / 2;
+    const Var pairs = pair_means(h), weight = finest ? after(r.conv1, encoding) : r.conv1.weight;
+    Var down = slice(pairs, 0, half + 1, half);
+    if (finest) down = linear(down, encoding);
+    const Var inner =
+        weight.dim(0) == 3
+            ? conv_down(pairs, weight, r.conv1.bias, frames, {.relu = true})
+            : relu(sum_pool(conv1d(h, weight, r.conv1.offsets(), frames, false, {.bias = r.conv1.bias}), 2,
+                              0.5));
+    return r.conv2(inner, {.residual = down});
+  }
+
+  /// `encode` and `residual.{i}`, to stand beside what else its owner has.
+  void list_parameters(ParameterList& list) {
+    list.add_module("encode", encode_);
+    for (std::size_t i = 0; i < levels(); ++i) list.add_module("residual." + std::to_string(i), residual_[i]);
+  }
+
+ private:
+  Conv1d encode_;
+  std::vector<Residual> residual_;  // residual_[i] leads from level i + 1 to level i
+};
+
+}  // namespace motiongan

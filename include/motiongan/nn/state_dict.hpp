@@ -1,0 +1,83 @@
+// Parameters to and from safetensors, named and shaped as PyTorch's state_dict() has them (SPEC 0).
+#pragma once
+#include "motiongan/io/safetensors.hpp"
+#include "motiongan/nn/module.hpp"
+
+namespace motiongan::io {
+
+namespace detail {
+
+/// [taps, out, in] <-> [out, in, taps]: moves the axis of size `taps` from the front to the back, or back
+/// again.
+template <class T>
+std::vector<T> move_taps(const std::vector<T>& values, std::size_t taps, bool to_back) {
+  const std::size_t rest = values.size() / taps;
+  std::vector<T> out(values.size());
+  for (std::size_t s = 0; s < taps; ++s)
+    for (std::size_t i = 0; i < rest; ++i) {
+      if (to_back)
+        out[i * taps + s] = values[s * rest + i];
+      else
+        out[s * rest + i] = values[i * taps + s];
+    }
+  return out;
+}
+
+}  // namespace detail
+
+/// The shape that a parameter has in a file.
+inline Shape file_shape(const NamedParameter& parameter) {
+  const Shape& s = parameter.value->shape();
+  return parameter.layout == ParameterLayout::convolution ? Shape{s[1], s[2], s[0]} : s;
+}
+
+/// A tensor on the device that has this parameter's layout (the parameter itself, or its gradient), in the
+/// order of files.
+inline std::vector<double> to_file_order(const NamedParameter& parameter, const Tensor& tensor) {
+  std::vector<double> values = tensor.to_host<double>();
+  return parameter.layout == ParameterLayout::convolution ? detail::move_taps(values, tensor.dim(0), true) : values;
+}
+
+/// Adds every parameter to `file` under `prefix` + its name, in the context's precision. Throws, naming the
+/// tensor, when one holds a number that is not finite: load_parameters() would refuse it.
+inline void save_parameters(const std::vector<NamedParameter>& parameters, SafeTensors& file,
+                            const std::string& prefix = "") {
+  for (const NamedParameter& p : parameters) {
+    const std::vector<double> values = to_file_order(p, p.value->value());
+    for (double v : values)
+      require(
+          std::isfinite(v), "the parameter \"", prefix + p.name, "\" holds ", v,
+          ": training diverged; nothing is saved, go back to the last file and try a lower learning rate");
+    file.tensors[prefix + p.name] =
+        p.value->context().precision() == Precision::f64
+            ? SafeTensor::of(file_shape(p), values)
+            : SafeTensor::of(file_shape(p), std::vector<float>(values.begin(), values.end()));
+  }
+}
+
+/// Sets every parameter from `file`. Throws, naming the tensor, when one is missing, has another shape, is
+/// not made of floating-point numbers or holds one that is not finite; then no parameter has changed. `where`
+/// names the file.
+inline void load_parameters(const std::vector<NamedParameter>& parameters, const SafeTensors& file,
+                            const std::string& where, const std::string& prefix = "") {
+  std::vector<std::vector<double>> all;
+  for (const NamedParameter& p : parameters) {
+    const auto found = file.tensors.find(prefix + p.name);
+    require(found != file.tensors.end(), where, ": the tensor \"", prefix + p.name, "\" of shape ",
+            file_shape(p), " is missing; the file belongs to another model or to other options");
+    require(found->second.shape == file_shape(p), where, ": the tensor \"", prefix + p.name, "\" has shape ",
+            found->second.shape, ", expected ", file_shape(p),
+            "; the file belongs to a model of other sizes");
+    all.push_back(found->second.as<double>());
+    for (double v : all.back())
+      require(std::isfinite(v), where, ": the tensor \"", prefix + p.name, "\" holds ", v,
+              "; the file is damaged or its training diverged");
+    if (p.layout == ParameterLayout::convolution) all.back() = detail::move_taps(all.back(), p.value->dim(0), false);
+  }
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    Tensor place = parameters[i].value->value();
+    place.write(std::span<const double>(all[i]));
+  }
+}
+
+}  // namespace motiongan::io

@@ -1,0 +1,121 @@
+// From distances of windows to a list of clips.
+#pragma once
+#include <algorithm>
+#include <limits>
+#include <tuple>
+#include <vector>
+
+#include "motiongan/search/index.hpp"
+#include "motiongan/search/windows.hpp"
+
+namespace motiongan {
+
+/// A hypothesis near a window.
+struct SearchNeighbour {
+  std::size_t hypothesis = 0;
+  int shift = 0;        ///< frames; frame t of the hypothesis lies on frame t + shift of the window
+  double distance = 0;  ///< search_distance()
+};
+
+/// A window that was found, with its one or two nearest hypotheses, nearest first; its distance is the
+/// first's.
+struct SearchHit {
+  SearchWindow window;
+  std::vector<SearchNeighbour> nearest;
+  double distance() const { return nearest.front().distance; }
+};
+
+struct SearchRanking {
+  std::vector<SearchHit> hits;  ///< nearest first
+  double median = 0;  ///< of all clips' (or windows') distances: how near a clip is that nobody asked for
+  std::size_t windows = 0;  ///< that were compared
+};
+
+struct SearchOptions {
+  std::size_t top = 10;       ///< results
+  std::size_t hop = 0;        ///< frames between two windows of a clip; 0: half a window
+  bool every_window = false;  ///< list windows, not clips: a clip may stand there more than once
+};
+
+/// Frames between two windows of a clip that `options` ask for.
+inline std::size_t search_hop(const motion::MotionFormat& format, const SearchOptions& options) {
+  return options.hop > 0 ? options.hop : std::max<std::size_t>(1, format.frames / 2);
+}
+
+/// The `top` nearest clips, each by its nearest window, or the nearest windows of all clips. Distances of the
+/// list are computed again in double by search_distance(), and order it; equal ones stand in the order of
+/// their clips and frames.
+inline SearchRanking rank(const SearchIndex& index, const std::vector<SearchWindow>& windows,
+                          const WindowDistances& found, const std::vector<std::vector<float>>& hypotheses,
+                          std::size_t top, bool every_window = false) {
+  const std::size_t count = found.hypotheses;
+  require(count == hypotheses.size() && count > 0 && found.distance.size() == windows.size() * count,
+          "distances of ", found.distance.size(), " pairs do not fit ", windows.size(), " windows and ",
+          hypotheses.size(), " hypotheses");
+  struct Candidate {
+    float distance;
+    std::size_t window;
+    bool operator<(const Candidate& other) const {
+      return std::tie(distance, window) < std::tie(other.distance, other.window);
+    }
+  };
+  std::vector<Candidate> candidates;
+  for (std::size_t w = 0; w < windows.size(); ++w) {
+    const float* const row = &found.distance[w * count];
+    const Candidate here{*std::min_element(row, row + count), w};
+    const bool same_clip = !candidates.empty() && windows[candidates.back().window].clip == windows[w].clip;
+    if (every_window || !same_clip)
+      candidates.push_back(here);
+    else
+      candidates.back() = std::min(candidates.back(), here);
+  }
+  SearchRanking out;
+  if (candidates.empty()) return out;
+  const auto middle = candidates.begin() + static_cast<std::ptrdiff_t>(candidates.size() / 2);
+  std::nth_element(candidates.begin(), middle, candidates.end());
+  out.median = static_cast<double>(middle->distance);
+
+  // Some more than are asked for: close to 0 the device's distances are not exact.
+  const std::size_t kept = std::min(candidates.size(), top + 16);
+  std::partial_sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(kept),
+                    candidates.end());
+  candidates.resize(kept);
+  for (const Candidate& candidate : candidates) {
+    const std::vector<float> poses = index.poses(windows[candidate.window]);
+    std::vector<Candidate> near;
+    for (std::size_t h = 0; h < count; ++h) near.push_back({found.distance[candidate.window * count + h], h});
+    const std::size_t most = std::min<std::size_t>(2, count);
+    std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(most), near.end());
+    SearchHit hit{windows[candidate.window], {}};
+    for (std::size_t i = 0; i < most; ++i) {
+      const std::size_t h = near[i].window;
+      const int shift = found.shift[candidate.window * count + h];
+      hit.nearest.push_back({h, shift, search_distance(index.format(), poses, hypotheses[h], shift)});
+    }
+    std::stable_sort(hit.nearest.begin(), hit.nearest.end(),
+                     [](const auto& a, const auto& b) { return a.distance < b.distance; });
+    out.hits.push_back(std::move(hit));
+  }
+  std::sort(out.hits.begin(), out.hits.end(), [](const SearchHit& a, const SearchHit& b) {
+    return std::tuple(a.distance(), a.window.clip, a.window.frame) <
+           std::tuple(b.distance(), b.window.clip, b.window.frame);
+  });
+  if (out.hits.size() > top) out.hits.resize(top);
+  return out;
+}
+
+/// The clips of an index nearest to the hypotheses, each [N, dof] as Dvgan::generate_poses() makes them.
+/// Distances are computed on the context's device.
+inline SearchRanking search(const Context& context, const SearchIndex& index,
+                            const std::vector<std::vector<float>>& hypotheses,
+                            const SearchOptions& options = {}) {
+  const std::vector<SearchWindow> windows = index.windows(search_hop(index.format(), options));
+  const SearchWindows compared(context, index.format(), index.frames(), index.starts(windows),
+                               {.keep_bytes = 0});
+  SearchRanking out =
+      rank(index, windows, compared(hypotheses), hypotheses, options.top, options.every_window);
+  out.windows = windows.size();
+  return out;
+}
+
+}  // namespace motiongan

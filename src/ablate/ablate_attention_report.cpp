@@ -1,0 +1,269 @@
+// motiongan ablate: what the variants make, measured and drawn.
+#include <algorithm>
+
+#include "ablate/ablate_attention.hpp"
+#include "motiongan/view/line_plot.hpp"
+#include "motiongan/view/pose_strip.hpp"
+#include "write_png.hpp"
+
+namespace motiongan::command {
+namespace {
+
+constexpr double long_seconds = 30;
+
+/// Positions as a motion whose figure is just those points: nothing is fitted, stretched bones are seen. End
+/// sites, whose places are not known, are left out.
+motion::Motion as_drawn(const motion::Skeleton& skeleton, double rate,
+                        std::span<const motion::Vec3> positions) {
+  motion::Motion out;
+  out.skeleton = skeleton;
+  for (motion::Joint& joint : out.skeleton.joints) joint.end_site.reset();
+  const std::size_t joints = skeleton.size();
+  out.rate = rate;
+  out.frames = positions.size() / joints;
+  out.rotations.assign(positions.size(), motion::Quat{1, 0, 0, 0});
+  for (std::size_t f = 0; f < out.frames; ++f)
+    for (std::size_t j = 0; j < joints; ++j) {
+      const int parent = skeleton.joints[j].parent;
+      const motion::Vec3& p = positions[f * joints + j];
+      out.positions.push_back(
+          parent < 0 ? p : motion::subtract(p, positions[f * joints + static_cast<std::size_t>(parent)]));
+    }
+  return out;
+}
+
+/// The positions with those that are far from any body brought near, and whether there were any: a model that
+/// falls apart makes limbs of a hundred metres, which no picture can hold.
+bool bring_near(const motion::Skeleton& skeleton, std::size_t prior_frames,
+                std::vector<motion::Vec3>& positions) {
+  const std::size_t joints = skeleton.size();
+  const double height = view::detail::standing_height(skeleton, 0);
+  double floor = positions.front()[1];
+  for (std::size_t i = 0; i < prior_frames * joints; ++i) floor = std::min(floor, positions[i][1]);
+  bool any = false;
+  const auto bring = [&](double& value, double low, double high) {
+    const double near = value >= low ? std::min(value, high) : low;  // a value that is no number is low too
+    any = any || near != value;
+    value = near;
+  };
+  for (std::size_t f = prior_frames * joints; f < positions.size(); f += joints) {
+    const motion::Vec3 before = positions[f - joints];
+    for (const std::size_t a : {0u, 2u}) bring(positions[f][a], before[a] - height, before[a] + height);
+    for (std::size_t j = 0; j < joints; ++j) {
+      motion::Vec3& p = positions[f + j];
+      bring(p[1], floor - 0.25 * height, floor + 1.75 * height);
+      for (const std::size_t a : {0u, 2u}) bring(p[a], positions[f][a] - height, positions[f][a] + height);
+    }
+  }
+  return any;
+}
+
+/// Rows of poses for both pictures: of each class the window that is followed by the most real frames.
+class Strips {
+ public:
+  Strips(const motion::ActionDataset& data, const ActionEvaluation& evaluation) : data_(data) {
+    for (std::size_t c = 0; c < data.format.classes.size(); ++c) {
+      std::optional<std::size_t> best;
+      std::size_t most = 0;
+      for (std::size_t i = 0; i < evaluation.windows().windows.size(); ++i) {
+        const EvaluationWindow& w = evaluation.windows().windows[i];
+        const std::size_t left = data.test[w.clip].frames - w.start;
+        if (w.label == c && left > most) best = i, most = left;
+      }
+      if (!best) continue;
+      const EvaluationWindow& w = evaluation.windows().windows[*best];
+      const motion::ActionClip& clip = data.test[w.clip];
+      windows_.push_back(*best);
+      titles_.push_back(data.format.classes[c]);
+      rows_.emplace_back();
+      add(rows_.size() - 1, "the real clip " + clip.id,
+          data.format.restore(std::span<const float>(clip.poses).subspan(w.start * data.format.dof()),
+                              std::span(clip.places).subspan(w.start)));
+    }
+  }
+
+  /// Adds what a variant made of all windows.
+  void add(std::string_view title, const std::vector<std::vector<motion::Vec3>>& all) {
+    for (std::size_t i = 0; i < windows_.size(); ++i) add(i, title, all[windows_[i]]);
+  }
+
+  /// Prior and `seconds` after it; a real clip that ends before that is drawn to its end.
+  void write(const fs::path& path, double seconds) const {
+    const auto frames =
+        data_.format.frames + static_cast<std::size_t>(std::lround(seconds * data_.format.rate));
+    std::vector<view::ViewedMotion> shown;
+    for (const auto& rows : rows_)
+      for (const view::ViewedMotion& row : rows) {
+        shown.push_back(row);
+        motion::Motion& m = shown.back().motion;
+        const std::size_t kept = std::min(m.frames, frames);
+        if (kept < frames)
+          shown.back().title +=
+              fmt::format(", which ends after {}", duration(static_cast<double>(kept) / m.rate));
+        m.frames = kept;
+        m.rotations.resize(kept * m.skeleton.size());
+        m.positions.resize(kept * m.skeleton.size());
+      }
+    write_png(path, view::pose_strip(shown, {.poses = 14, .figure_height = 84}));
+  }
+
+ private:
+  void add(std::size_t row, std::string_view title, std::vector<motion::Vec3> positions) {
+    const bool left = bring_near(data_.format.skeleton(), data_.format.frames, positions);
+    rows_[row].push_back(
+        {fmt::format("{}: {}{}", titles_[row], title, left ? ", cut where it leaves the picture" : ""),
+         as_drawn(data_.format.skeleton(), data_.format.rate, positions), data_.format.frames});
+  }
+
+  const motion::ActionDataset& data_;
+  std::vector<std::size_t> windows_;
+  std::vector<std::string> titles_;                    // classes
+  std::vector<std::vector<view::ViewedMotion>> rows_;  // [classes][rows]
+};
+
+void print_windows(const ActionEvaluation& evaluation) {
+  const EvaluationWindows& w = evaluation.windows();
+  const std::vector<std::string>& classes = evaluation.format().classes;
+  const std::size_t length = evaluation.format().frames + w.future;
+  std::string each, none;
+  for (std::size_t c = 0; c < classes.size(); ++c) {
+    each += fmt::format("{}{} ({} of {})", c > 0 ? ", " : "", classes[c], counted(w.per_class[c], "window"),
+                        counted(w.clips_per_class[c], "clip"));
+    if (w.per_class[c] == 0) none += (none.empty() ? "" : ", ") + classes[c];
+  }
+  fmt::print(
+      "\nmeasured on test clips: {}\n{} of {} last the {} frames that a prior and what follows it need\n",
+      each, w.long_clips, counted(w.clips, "test clip"), length);
+  if (!none.empty()) fmt::print("no test clip of {} lasts that long: nothing is said of it\n", none);
+}
+
+void print_tables(const ActionEvaluation& evaluation, std::span<const AblationResult> results, bool metres) {
+  const auto number = [](double v) { return fmt::format("{:.3g}", v); };
+  const auto short_length = [&](double v) { return number(metres ? 1000 * v : v); };
+  std::vector<std::vector<std::string>> angles, motions;
+  const auto add = [&](const AblationResult& r, std::string_view paper) {
+    const ActionMeasures& m = r.measures;
+    if (r.name != "truth")
+      angles.push_back({r.name, r.iterations > 0 ? std::to_string(r.iterations) : "", number(m.curve_error),
+                        number(m.curve_error_first), number(m.curve_error_last),
+                        fmt::format("{} +- {}", number(m.window_error), number(m.window_error_deviation)),
+                        std::string(paper)});
+    std::vector<std::string> row{r.name,
+                                 number(m.bone_error),
+                                 short_length(m.seam),
+                                 short_length(m.seam_body),
+                                 short_length(m.step),
+                                 number(m.speed)};
+    if (const auto& l = r.long_run)
+      row.insert(row.end(), {number(l->bone_error), short_length(l->step), number(l->speed),
+                             number(l->distance), fmt::format("{:.0f}%", 100 * l->broken)});
+    else
+      row.insert(row.end(), 5, "");
+    motions.push_back(row);
+  };
+  add({"truth", evaluation.truth()}, "");
+  for (const AblationResult& r : results)
+    add(r, r.name == "still" ? "(not in it: the last pose held)" : ablation_variant(r.name).paper);
+  fmt::print(
+      "\nangle between adjacent bones over the {} frames after the prior, in degrees: how far its mean curve "
+      "is "
+      "from\nthe truth's (all frames, first second, last second), and each window from its own truth (+- "
+      "between "
+      "windows)\n",
+      evaluation.truth().angles.size());
+  print_table({"", "iterations", "curve", "first s", "last s", "window", "the paper says"}, angles, "lrrrrrl",
+              "  ");
+  const std::string small = metres ? " mm" : "", large = metres ? " m" : "";
+  fmt::print(
+      "\nmotion{}: how far bones are from their length in the prior; mean step of the joints where seconds "
+      "meet\n"
+      "(seam; body: without the root's step), median step anywhere, speed of the root. The same over {} s, "
+      "with how\n"
+      "far the root got, and the share of motions whose bones are off by more than 100% in the last second: "
+      "broken\n",
+      metres ? "" : " (lengths in the file's unit; --unit-metres gives metres)", brief(long_seconds));
+  print_table({"", "bones %", "seam" + small, "body" + small, "step" + small, "speed" + large + "/s",
+               "30 s: bones %", "step" + small, "speed" + large + "/s", "from start" + large, "broken"},
+              motions, "lrrrrrrrrrr", "  ");
+}
+
+/// How many iterations a run's model has had; 0 where its checkpoint is not there.
+std::size_t iterations_of(const fs::path& folder) {
+  const fs::path checkpoint = RunFiles{folder}.checkpoint();
+  return fs::exists(checkpoint) ? read_run_record(checkpoint).iteration : 0;
+}
+
+}  // namespace
+
+void report_variants(const Context& context, const motion::ActionDataset& data, const fs::path& save,
+                     const std::vector<const AblationVariant*>& variants, const AblationReport& options) {
+  const bool metres = options.unit_metres > 0;
+  EvaluationOptions wanted = options.evaluation;
+  wanted.unit_metres = metres ? options.unit_metres : 1;
+  const ActionEvaluation evaluation(data, wanted);
+  const auto long_frames = static_cast<std::size_t>(std::lround(long_seconds * data.format.rate));
+  const std::string own_format = io::to_json(data.format).dump();
+  Strips strips(data, evaluation);
+  std::vector<AblationResult> results;
+  std::string missing;
+  print_windows(evaluation);
+  const auto measure = [&](std::string_view name, std::string_view title, const FutureMaker& maker) {
+    const auto all = evaluation.positions(maker, long_frames);
+    results.push_back({std::string(name), evaluation.measure(maker), evaluation.measure_alone(all), 0});
+    if (!title.empty()) strips.add(title, all);
+  };
+  for (const AblationVariant* variant : variants) {
+    const fs::path file = RunFiles{save / variant->name}.generator();
+    if (!fs::exists(file)) {
+      require(!options.all_must_be_there, "there is no model of the variant ", variant->name, " (no ",
+              file.string(), ")");
+      missing += (missing.empty() ? "" : ", ") + std::string(variant->name);
+      continue;
+    }
+    const ActionGan model = ActionGan::load(context, file);
+    require(io::to_json(model.format()).dump() == own_format, file.string(),
+            ": this model was trained on other data (other clips, labels, split or pose); its test clips "
+            "cannot be "
+            "told from what it was trained on. Give the folder and the options of its training");
+    measure(variant->name, variant->title, future_maker(model));
+    results.back().iterations = iterations_of(save / variant->name);
+  }
+  require(!results.empty(), "there is no model in ", save.string(),
+          ": none of the variants has been trained");
+  if (!missing.empty()) fmt::print("not there, left out: {}\n", missing);
+
+  make_folder(save);
+  const std::vector<AblationClaim> claims = judge_claims(results, metres);
+  write_angles(save / "angles.csv", evaluation, results);
+  std::vector<view::Series> curves;
+  const auto add_curve = [&](std::string name, const std::vector<double>& angles) {
+    curves.push_back({std::move(name), {}, angles});
+    for (std::size_t f = 0; f < angles.size(); ++f) curves.back().x.push_back(static_cast<double>(f + 1));
+  };
+  add_curve("truth", evaluation.truth().angles);
+  for (const AblationResult& r : results)
+    add_curve(std::string(ablation_variant(r.name).title), r.measures.angles);
+  write_png(save / "angles.png",
+            view::line_plot(curves, {.title = "mean angle between adjacent bones (degrees)",
+                                     .x_label = "frame after the prior",
+                                     .width = 1480,
+                                     .height = 620}));
+  measure("still", "", stand_still(data.format));
+  write_table(save / "table.csv", evaluation, results, metres);
+
+  print_tables(evaluation, results, metres);
+  if (!claims.empty())
+    fmt::print("\nis it as the paper says? (one training of each, one seed; even: within 10%)\n");
+  for (const AblationClaim& claim : claims)
+    fmt::print("  {:<4} {} ({})\n",
+               claim.verdict == Verdict::yes  ? "yes"
+               : claim.verdict == Verdict::no ? "no"
+                                              : "even",
+               claim.claim, claim.evidence);
+  strips.write(save / "strip_10s.png", 10);
+  strips.write(save / "strip_30s.png", long_seconds);
+  fmt::print("\nwrote table.csv, angles.csv, angles.png, strip_10s.png and strip_30s.png in {}\n",
+             shown(save));
+}
+
+}  // namespace motiongan::command

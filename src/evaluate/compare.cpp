@@ -1,0 +1,80 @@
+// motiongan compare: statistics of generated clips beside those of real ones.
+#include "command.hpp"
+#include "motiongan/formats/bvh.hpp"
+#include "motiongan/data/clip_source.hpp"
+#include "motiongan/data/first_frame.hpp"
+#include "motiongan/motion/motion.hpp"
+#include "motiongan/metrics/statistics.hpp"
+#include "motiongan/formats/text_file.hpp"
+
+namespace motiongan::command {
+namespace {
+
+struct CompareArgs {
+  std::vector<std::string> generated, real;
+  double rate = 0, margin = 0.05;
+  std::string csv;
+};
+
+/// Clips of files and folders at one rate, without T-poses; those that have no two frames then are left out.
+std::vector<motion::Motion> load(const std::vector<std::string>& where, double rate) {
+  std::vector<motion::Motion> out;
+  std::size_t short_ones = 0;
+  for (const std::string& given : where)
+    for (const fs::path& file : motion::find_bvh_files(given)) {
+      motion::Clip clip = motion::read_bvh(file);
+      motion::drop_first_frames(clip, motion::FirstFrame::automatic);
+      motion::Motion motion = motion::to_motion(clip);
+      if (rate > 0) motion = motion::resample(motion, rate);
+      motion.frames < 2 ? void(++short_ones) : out.push_back(std::move(motion));
+    }
+  if (short_ones > 0)
+    fmt::print(stderr, "motiongan: {} with fewer than two frames left out\n", counted(short_ones, "clip"));
+  return out;
+}
+
+int compare_sets(const CompareArgs& args) {
+  const std::vector<motion::Motion> generated = load(args.generated, args.rate);
+  require(!generated.empty(), "no generated clip has two frames; nothing to compare");
+  // Speeds depend on the rate: both sets are taken at the generated one's.
+  const double rate = args.rate > 0 ? args.rate : generated.front().rate;
+  for (const motion::Motion& motion : generated)
+    require(motion.rate == rate, "the generated clips have different rates (", brief(rate), " and ",
+            brief(motion.rate), " per second); choose one with --rate");
+  const std::vector<motion::Motion> real = load(args.real, rate);
+  require(!real.empty(), "no real clip has two frames at ", brief(rate),
+          " per second; nothing to compare with");
+  const motion::StatisticsComparison result =
+      motion::compare(motion::measure(generated), motion::measure(real), args.margin);
+  fmt::print("at {} frames per second; ratios are generated over real, 1 would be the same\n\n{}",
+             brief(rate), motion::to_table(result));
+  if (!args.csv.empty()) {
+    make_folder_of(args.csv);
+    motion::write_text_atomically(args.csv, motion::to_csv(result));
+    fmt::print("wrote {}\n", args.csv);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, Job& job) {
+  CLI::App* verb = app.add_subcommand(
+      "compare",
+      "Statistics of generated clips beside those of real ones: spread, speed, range, for each joint");
+  const auto args = std::make_shared<CompareArgs>();
+  verb->add_option("--generated", args->generated, "BVH files, or folders of them")
+      ->required()
+      ->type_name("FILES");
+  verb->add_option("--real", args->real, "BVH files, or folders of them")->required()->type_name("FILES");
+  verb->add_option("--rate", args->rate, "compare at so many frames per second [the generated clips']")
+      ->check(CLI::Range(1e-3, 1e4))
+      ->type_name("HZ");
+  verb->add_option("--margin", args->margin, "widen the real range by this share of it at either end")
+      ->check(not_negative())
+      ->capture_default_str();
+  verb->add_option("--csv", args->csv, "also write the table, a line for each joint")->type_name("FILE");
+  verb->callback([&job, args] { job = [args] { return compare_sets(*args); }; });
+}
+
+}  // namespace motiongan::command

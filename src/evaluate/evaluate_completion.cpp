@@ -1,0 +1,136 @@
+// motiongan evaluate completion: the first paper's Table 3.
+#include "evaluate/evaluate_completion.hpp"
+
+#include "evaluate/evaluate.hpp"
+#include "signals.hpp"
+
+namespace motiongan::command {
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
+  return out;
+}
+
+fs::path folder_of(const CompletionArgs& args, const std::string& model) {
+  return fs::path(args.save) / model;
+}
+
+namespace {
+
+const std::vector<std::string>& known_models() {
+  static const std::vector<std::string> all = CompletionArgs{}.models;
+  return all;
+}
+
+int evaluate_completion(CompletionArgs args, const CLI::App& verb) {
+  std::vector<std::string> trained;
+  for (const std::string& model : args.models) {
+    require(std::find(known_models().begin(), known_models().end(), model) != known_models().end(),
+            "--models ", model, ": expected some of ", listed(known_models()));
+    require(std::count(args.models.begin(), args.models.end(), model) == 1, "--models names ", model,
+            " twice");
+    if (model != "zero") trained.push_back(model);
+  }
+  require(trained.empty() || !args.save.empty(), "--save DIR is needed for ", listed(trained),
+          ": where they are kept; --models zero alone needs none");
+  // Minutes alone are the whole budget.
+  if (args.minutes > 0) {
+    if (verb.count("--iterations") == 0) args.predictors.iterations = 0;
+    if (verb.count("--dvgan-iterations") == 0) args.dvgan.iterations = 0;
+    args.predictors.minutes = args.dvgan.minutes = args.minutes;
+  }
+  motion::ExpmapSelection selection{args.actions, args.train_actions, {}};
+  if (args.layout != "auto")
+    selection.layout = args.layout == "h36m" ? motion::ExpmapLayout::h36m : motion::ExpmapLayout::cmu;
+  fmt::print("reading {}\n", shown(args.folder));
+  const CompletionData data(motion::read_expmap_collection(args.folder, selection));
+  std::size_t frames = 0;
+  for (const CompletionClip& clip : data.train()) frames += clip.frames;
+  print_fact("layout", fmt::format("{}: {} numbers a line, {} of them change", name_of(data.layout()),
+                                   data.columns(), data.dof()));
+  print_fact("training", fmt::format("{}, {} frames at {} per second", counted(data.train().size(), "file"),
+                                     frames, brief(data.rate())));
+  print_fact("tests", fmt::format("{} of each of {}: {}", CompletionProtocol::tests,
+                                  counted(data.actions().size(), "action"), listed(data.actions())));
+  const Context context;
+  if (!trained.empty()) print_fact("device", describe(context.device()));
+  if (!args.evaluate_only && !trained.empty()) {
+    print_fact("saved to", args.save);
+    if (!train_completion_models(context, data, args, verb)) return 128 + caught_signal();
+  }
+  report_completion(context, data, args);
+  return 0;
+}
+
+void add_model_options(CLI::App& verb, CompletionArgs& a) {
+  const char* group = "Training";
+  const auto option = [&](const char* name, auto& member, const char* text) {
+    return verb.add_option(name, member, text)->capture_default_str()->group(group);
+  };
+  option("--iterations", a.predictors.iterations, "of each model but dvgan")->check(positive());
+  option("--dvgan-iterations", a.dvgan.iterations, "of dvgan")->check(positive());
+  option("--minutes", a.minutes,
+         "for each model; without a number of iterations they are the whole budget; 0: no limit")
+      ->check(not_negative());
+  option("--seed", a.seed, "of first weights, batches and noise")->check(not_negative());
+  option("--save-every", a.save_every_minutes, "minutes between two checkpoints; 0: only at the end")
+      ->check(not_negative());
+  option("--log-every", a.log_every, "iterations between two rows of log.csv")->check(positive());
+  group = "lstm, seq2seq, erd, lstm-3lr";
+  option("--hidden", a.hidden, "width; 0: that of its paper (lstm 256, seq2seq 1024, the others 1000)")
+      ->check(not_negative());
+  option("--batch", a.batch, "windows in a step")->check(positive());
+  group = "dvgan";
+  option("--dvgan-hidden", a.dvgan_hidden, "width")->check(positive());
+  option("--dvgan-batch", a.dvgan_batch, "windows in a step")->check(positive());
+  option("--dvgan-frames", a.dvgan_frames,
+         "frames of a window; 0: 64 for h36m, 32 for cmu, whose running clips hold no more")
+      ->check(not_negative());
+  option("--dvgan-stride", a.dvgan_stride, "uses every so many frames of the protocol; 2: 12.5 per second")
+      ->check(CLI::Range(1, 25));
+  option("--critic", a.critic, "cnn or rnn")->check(CLI::IsMember({"cnn", "rnn"}));
+  option("--critic-steps", a.critic_steps, "in each iteration")->check(positive());
+  option("--completion-share", a.completion_share,
+         "share of the steps whose fakes go on from real frames; the paper has none")
+      ->check(CLI::Range(0.0, 1.0));
+}
+
+}  // namespace
+
+void add_evaluate_completion(CLI::App& evaluate, Job& job) {
+  CLI::App* verb = evaluate.add_subcommand(
+      "completion",
+      "How far completions are from what really follows, as the motion-prediction papers measure it: trains "
+      "the\n"
+      "baselines and dvgan on text files of exponential maps, each in a folder of --save, and prints and "
+      "writes\n"
+      "the tables. Ctrl-C saves and stops; the same command goes on, and trains nothing twice.");
+  const auto args = std::make_shared<CompletionArgs>();
+  CompletionArgs& a = *args;
+  verb->add_option("FOLDER", a.folder, "folder with S1, S5, ... (Human3.6M) or train and test (CMU)")
+      ->required()
+      ->type_name("");
+  verb->add_option("--layout", a.layout, "h36m or cmu; auto: by the folders")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "h36m", "cmu"}));
+  verb->add_option("--actions", a.actions, "to test [all that have test files]")
+      ->delimiter(',')
+      ->type_name("A,B");
+  verb->add_option("--train-actions", a.train_actions, "to train on [all that have training files]")
+      ->delimiter(',')
+      ->type_name("A,B");
+  verb->add_option("--models", a.models, "rows of the tables")
+      ->delimiter(',')
+      ->type_name("A,B")
+      ->default_str(listed(known_models()));
+  verb->add_option("--save", a.save, "folder of the trained models and of the tables")->type_name("DIR");
+  verb->add_flag("--evaluate-only", a.evaluate_only, "train nothing; take the models that are there");
+  verb->add_option("--samples", a.samples, "completions of each test by dvgan")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 65535));
+  add_model_options(*verb, a);
+  verb->callback([&job, args, verb] { job = [args, verb] { return evaluate_completion(*args, *verb); }; });
+}
+
+}  // namespace motiongan::command

@@ -1,0 +1,48 @@
+// What the parts of `motiongan evaluate completion` share.
+#pragma once
+#include "command.hpp"
+#include "motiongan/experiments/completion_models.hpp"
+#include "motiongan/experiments/completion_table.hpp"
+#include "train/training_budget.hpp"
+
+namespace motiongan::command {
+
+struct CompletionArgs {
+  std::string folder, layout = "auto", save;
+  std::vector<std::string> actions, train_actions;
+  std::vector<std::string> models{"zero", "lstm", "seq2seq", "erd", "lstm-3lr", "dvgan"};
+  bool evaluate_only = false;
+
+  TrainingBudget predictors{0, 10'000}, dvgan{0, 2'000};
+  double minutes = 0;
+  std::size_t hidden = 0, batch = 16;  // of the predictors
+
+  std::size_t dvgan_hidden = 256, dvgan_batch = 64, dvgan_frames = 0, dvgan_stride = 2, critic_steps = 10;
+  std::string critic = "cnn";
+  double completion_share = 0.5;
+
+  std::uint64_t seed = 1;
+  double save_every_minutes = 5;
+  std::size_t log_every = 10;
+  std::size_t samples = 10;
+};
+
+/// "walking, running".
+std::string listed(const std::vector<std::string>& names);
+
+/// The folder of a model's run.
+fs::path folder_of(const CompletionArgs& args, const std::string& model);
+
+/// Trains those of args.models that have not had their budget. One that diverges is told, and left as it was
+/// last saved. Returns whether all are done: not if a signal stopped it. `verb` tells which options were
+/// given: those that were not are taken from a run that is there.
+bool train_completion_models(const Context& context, const CompletionData& data, const CompletionArgs& args,
+                             const CLI::App& verb);
+
+/// Error unless the run was trained on these files.
+void require_same_data(const CompletionData& data, const fs::path& checkpoint);
+
+/// Measures the models in args.save and prints the tables; writes table.csv, table.md and table.json there.
+void report_completion(const Context& context, const CompletionData& data, const CompletionArgs& args);
+
+}  // namespace motiongan::command

@@ -1,0 +1,145 @@
+// motiongan evaluate motion: files of generated motion beside real ones, by measures that need no model.
+#include "evaluate/evaluate_motion.hpp"
+
+#include <map>
+
+#include "evaluate/evaluate.hpp"
+#include "motiongan/metrics/npss.hpp"
+#include "motiongan/formats/bvh.hpp"
+#include "motiongan/data/clip_source.hpp"
+#include "motiongan/data/first_frame.hpp"
+#include "motiongan/motion/motion.hpp"
+#include "motiongan/motion/skeleton_match.hpp"
+#include "motiongan/formats/text_file.hpp"
+
+namespace motiongan::command {
+namespace {
+
+struct EvaluateMotionArgs {
+  std::string generated, real, json;
+  double rate = 0;
+  FootSkateOptions feet;
+};
+
+/// Motions by their id: the file's path below the folder, without its extension.
+using NamedMotions = std::map<std::string, motion::Motion>;
+
+/// Clips of a folder or a file at one rate, without T-poses; those that are too short to measure are left
+/// out.
+NamedMotions load(const fs::path& where, double rate) {
+  const std::vector<fs::path> files = motion::find_bvh_files(where);
+  const std::vector<std::string> ids = motion::clip_ids(files, where);
+  NamedMotions out;
+  std::size_t short_ones = 0;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    motion::Clip clip = motion::read_bvh(files[i]);
+    motion::drop_first_frames(clip, motion::FirstFrame::automatic);
+    motion::Motion motion = motion::to_motion(clip);
+    if (rate > 0) motion = motion::resample(motion, rate);
+    if (!out.empty())
+      motion::require_same_joints(out.begin()->second.skeleton, motion.skeleton, files[i].string());
+    motion.frames < 4 ? void(++short_ones) : void(out.emplace(ids[i], std::move(motion)));
+  }
+  if (short_ones > 0)
+    fmt::print(stderr, "motiongan: {} of {} with fewer than four frames left out\n",
+               counted(short_ones, "clip"), where.string());
+  require(!out.empty(), where.string(), " holds no clip of four frames",
+          rate > 0 ? concat(" at ", brief(rate), " per second") : std::string(), "; nothing to measure");
+  return out;
+}
+
+std::vector<motion::Motion> all_of(const NamedMotions& named) {
+  std::vector<motion::Motion> out;
+  for (const auto& [id, motion] : named) out.push_back(motion);
+  return out;
+}
+
+double seconds_of(const NamedMotions& named) {
+  double seconds = 0;
+  for (const auto& [id, motion] : named) seconds += static_cast<double>(motion.frames - 1) / motion.rate;
+  return seconds;
+}
+
+/// What files of equal names come to.
+struct Pairs {
+  Npss npss;
+  std::size_t shortest = 0, longest = 0;  ///< frames
+};
+
+Pairs compare_pairs(const NamedMotions& generated, const NamedMotions& real) {
+  Pairs out;
+  for (const auto& [id, made] : generated) {
+    const auto at = real.find(id);
+    if (at == real.end()) continue;
+    const motion::Motion& truth = at->second;
+    motion::require_same_joints(truth.skeleton, made.skeleton, "the generated clip " + id);
+    const std::size_t frames = std::min(truth.frames, made.frames);
+    const auto root = static_cast<std::size_t>(motion::moving_root(truth));
+    out.npss.add(prediction_angles(motion::slice(truth, 0, frames), root),
+                 prediction_angles(motion::slice(made, 0, frames), root), frames);
+    out.shortest = out.npss.sequences() == 1 ? frames : std::min(out.shortest, frames);
+    out.longest = std::max(out.longest, frames);
+  }
+  return out;
+}
+
+int evaluate_motion(const EvaluateMotionArgs& args) {
+  const NamedMotions generated = load(args.generated, args.rate);
+  // Speeds and jerk depend on the rate: both sets are taken at the generated one's.
+  const double rate = args.rate > 0 ? args.rate : generated.begin()->second.rate;
+  for (const auto& [id, motion] : generated)
+    require(motion.rate == rate, "the generated clips have different rates (", brief(rate), " and ",
+            brief(motion.rate), " per second); choose one with --rate");
+  const NamedMotions real = load(args.real, rate);
+  const MotionQuality made = measure_quality(all_of(generated), args.feet),
+                      truth = measure_quality(all_of(real), args.feet);
+  const Pairs pairs = compare_pairs(generated, real);
+
+  std::vector<std::vector<std::string>> rows{
+      {"clips", std::to_string(made.motions), std::to_string(truth.motions)},
+      {"seconds", cell(seconds_of(generated), 1), cell(seconds_of(real), 1)}};
+  for (auto& row : quality_rows(made, truth)) rows.push_back(std::move(row));
+  const std::size_t count = pairs.npss.sequences();
+  if (count > 0) rows.push_back({"NPSS", cell(pairs.npss.value(), 4), "0"});
+  fmt::print("at {} frames per second\n\n", brief(rate));
+  print_table({"", "generated", "real"}, rows, "lrr");
+  fmt::print("\n");
+  print_quality_notes(truth, args.feet);
+  if (count > 0)
+    fmt::print("NPSS: of {} of files with equal names, over {} frames: less is better\n",
+               counted(count, "pair"),
+               pairs.shortest == pairs.longest ? std::to_string(pairs.longest)
+                                               : fmt::format("{} to {}", pairs.shortest, pairs.longest));
+  else
+    fmt::print("NPSS is measured on files of equal names in both folders: there are none\n");
+  fmt::print("{} compare gives spread, speed and range of each joint\n", program());
+  if (args.json.empty()) return 0;
+  nlohmann::json out{{"rate", rate}, {"generated", quality_json(made)}, {"real", quality_json(truth)}};
+  if (count > 0) out["npss"] = {{"value", pairs.npss.value()}, {"pairs", count}, {"frames", pairs.longest}};
+  make_folder_of(args.json);
+  motion::write_text_atomically(args.json, out.dump(2) + "\n");
+  fmt::print("wrote {}\n", shown(args.json));
+  return 0;
+}
+
+}  // namespace
+
+void add_evaluate_motion(CLI::App& evaluate, Job& job) {
+  CLI::App* verb = evaluate.add_subcommand("motion",
+                                           "Generated clips beside real ones, without any model: feet that "
+                                           "slide, jerk, bones that stretch; where\n"
+                                           "files of equal names are predictions and their truth, NPSS too.");
+  const auto args = std::make_shared<EvaluateMotionArgs>();
+  verb->add_option("--generated", args->generated, "BVH file, or folder of them")
+      ->required()
+      ->type_name("DIR");
+  verb->add_option("--real", args->real, "BVH file, or folder of them")->required()->type_name("DIR");
+  verb->add_option("--rate", args->rate, "measure at so many frames per second [the generated clips']")
+      ->check(CLI::Range(1e-3, 1e4))
+      ->type_name("HZ");
+  add_quality_options(*verb, args->feet);
+  verb->add_option("--json", args->json, "write all of it to a file")->type_name("FILE");
+  verb->callback([&job, args] { job = [args] { return evaluate_motion(*args); }; });
+}
+
+}  // namespace motiongan::command

@@ -1,0 +1,138 @@
+// motiongan augment: a synthetic clip for each training clip, and whether they help.
+#include "generate/augment.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "action_files.hpp"
+#include "generate/action_priors.hpp"
+#include "motiongan/data/clip_source.hpp"
+#include "prompt.hpp"
+
+namespace motiongan::command {
+namespace {
+
+struct AugmentArgs {
+  std::string model, out, format = "bvh";
+  std::uint64_t seed = 1;
+  bool study = false;
+  ActionDataArgs data;
+  StudyArgs studied;
+};
+
+bool gives_split(const CLI::App& verb) {
+  for (const char* name : {"--subjects", "--test-subjects", "--train-share", "--split-seed"})
+    if (verb.count(name) > 0) return true;
+  return false;
+}
+
+/// Puts clips into the parts in which the model's training had them; others stay where they are. Where the
+/// command line asks for another split, says which clips held out the model has seen.
+void follow_split(motion::ActionDataset& data, const fs::path& split, bool other_split) {
+  if (!fs::exists(split)) {
+    fmt::print(
+        "there is no {}: training clips are those of this split, whether the model was trained on them or "
+        "not\n",
+        split.string());
+    return;
+  }
+  std::map<std::string, bool> trained;
+  for (const SplitLine& line : read_split(split)) trained[line.id] = line.train;
+  if (other_split) {
+    const auto seen = std::count_if(data.test.begin(), data.test.end(), [&](const motion::ActionClip& clip) {
+      return trained.contains(clip.id) && trained.at(clip.id);
+    });
+    if (seen > 0)
+      fmt::print("note: the model was trained on {} of the {} held out\n", seen,
+                 counted(data.test.size(), "clip"));
+    return;
+  }
+  std::vector<motion::ActionClip> train, test;
+  for (auto* part : {&data.train, &data.test})
+    for (motion::ActionClip& clip : *part) {
+      const auto found = trained.find(clip.id);
+      const bool is_train = found != trained.end() ? found->second : part == &data.train;
+      (is_train ? train : test).push_back(std::move(clip));
+    }
+  data.train = std::move(train);
+  data.test = std::move(test);
+  require(!data.train.empty(), "none of the clips is one that the model was trained on (", split.string(),
+          ")");
+}
+
+/// Clips, and labels.tsv for a training on them.
+void write_clips(const AugmentArgs& args, const ActionGan& model,
+                 const std::vector<SyntheticClip>& clips) {
+  const fs::path out = args.out;
+  make_folder(out);
+  std::vector<std::string> names;
+  std::string labels = "# clip id\tlabel; synthetic clips\n";
+  for (const SyntheticClip& s : clips) {
+    std::string name = s.clip.id + "_synthetic";
+    std::replace(name.begin(), name.end(), '/', '-');
+    labels += name + "\t" + model.format().classes[s.label] + "\n";
+    names.push_back(std::move(name));
+  }
+  motion::in_two_threads(clips.size(), [&](std::size_t i) {
+    const motion::PositionClip& clip = clips[i].clip;
+    write_action_clip(out / (names[i] + "." + args.format), clip,
+                      args.format == "bvh" ? motion_from_positions(clip) : motion::Motion{}, 0);
+  });
+  if (args.format != "bvh") write_bones_beside(out, model.format().skeleton());
+  motion::write_text_atomically(out / "labels.tsv", labels);
+  fmt::print("wrote {}: {} and labels.tsv; the first {} of each are the real clip's\n", out.string(),
+             counted(clips.size(), "clip"), counted(model.format().frames, "frame"));
+}
+
+int augment(AugmentArgs args, const CLI::App& verb) {
+  require(args.study || !args.out.empty(), "give --out DIR for the clips, or --study, or both");
+  const fs::path file = model_file(args.model);
+  const Context context;
+  const ActionGan model = ActionGan::load(context, file);
+  const motion::PositionFormat& format = model.format();
+  const fs::path run = fs::is_directory(args.model) ? fs::path(args.model) : file.parent_path();
+  take_data_of_run(args.data, verb, run, "give the folder of clips and their labels");
+  fill_in_choices(args.data);
+  motion::ActionDatasetOptions& options = args.data.options;
+  options.frames = format.frames;
+  options.rate = format.rate;
+  options.root_track = format.layout.root_track();
+  if (options.classes.empty()) options.classes = format.classes;
+  motion::ActionDataset data = load_data(args.data);
+  follow_split(data, RunFiles{run}.split(), gives_split(verb));
+  print_data(data, args.data);
+  const std::vector<SyntheticClip> clips = synthesise(model, data, data.train, args.seed);
+  if (!args.out.empty()) write_clips(args, model, clips);
+  return args.study ? run_study(args.studied, model, data, clips) : 0;
+}
+
+}  // namespace
+
+void add_augment(CLI::App& app, Job& job) {
+  CLI::App* verb = app.add_subcommand("augment",
+                                      "Double a set of clips with classes: one synthetic clip for each "
+                                      "training clip, of the same first second,\n"
+                                      "class and length, by a model of `motiongan train attention`. Clips "
+                                      "and labels are those of the training, unless\n"
+                                      "others are given. --study trains classifiers with and without them, "
+                                      "and measures both on the clips held out.");
+  const auto args = std::make_shared<AugmentArgs>();
+  verb->add_option("MODEL", args->model, "model file, or the --save folder of a training")
+      ->required()
+      ->type_name("");
+  add_action_data_options(*verb, args->data, false);
+  verb->add_option("--out", args->out, "folder for the clips and labels.tsv; made if missing")
+      ->type_name("DIR");
+  add_format_option(*verb, args->format);
+  verb->add_option("--seed", args->seed, "of the noise, where the model has some")
+      ->check(not_negative())
+      ->capture_default_str();
+  verb->add_flag("--study", args->study, "train and measure classifiers");
+  add_study_options(*verb, args->studied);
+  verb->callback([&job, args, verb] {
+    default_procedural(*verb, args->data);
+    job = [args, verb] { return augment(*args, *verb); };
+  });
+}
+
+}  // namespace motiongan::command

@@ -1,0 +1,239 @@
+// motiongan complete: how a clip could go on.
+#include <charconv>
+#include <cmath>
+
+#include "motiongan/metrics/euler_error.hpp"
+#include "motiongan/models/dvgan.hpp"
+#include "motiongan/formats/bvh.hpp"
+#include "motiongan/data/first_frame.hpp"
+#include "motiongan/motion/motion.hpp"
+#include "prompt.hpp"
+#include "show.hpp"
+#include "signals.hpp"
+#include "generate/streaming.hpp"
+
+namespace motiongan::command {
+namespace {
+
+struct CompleteArgs {
+  std::string model, prior, text, from, out = ".", html, png;
+  std::size_t seed_frames = 25, frames = 39, count = 1, first_sample = 0;
+  std::uint64_t seed = 1;
+  double rate = 0;
+};
+
+/// The clip at the model's rate, from the frame on that the seed begins with.
+struct Prior {
+  motion::Motion seed, truth;  // truth: what the clip does next, as far as it goes
+  std::string from;            // where the seed begins, for people
+};
+
+/// The frame of the file that --from names: "240", or "2.5s".
+std::size_t first_frame(const std::string& from, double rate) {
+  const bool seconds = from.ends_with('s');
+  const char *begin = from.data(), *end = begin + from.size() - (seconds ? 1 : 0);
+  double value = -1;
+  const auto [stop, problem] = std::from_chars(begin, end, value);
+  require(problem == std::errc() && stop == end && value >= 0 && value < 1e9 &&
+              (seconds || value == std::floor(value)),
+          "--from ", from, ": expected a frame of the prior, such as 240, or seconds, such as 2.5s");
+  return static_cast<std::size_t>(std::lround(seconds ? value * rate : value));
+}
+
+Prior read_prior(const CompleteArgs& args, const motion::MotionFormat& format) {
+  motion::Clip clip = motion::read_bvh(args.prior);
+  format.require_skeleton(clip.skeleton, "the prior " + args.prior);
+  const std::size_t in_file = clip.frames;
+  const std::size_t posed = motion::drop_first_frames(clip, motion::FirstFrame::automatic);
+  const motion::Motion whole = motion::to_motion(clip);
+  const std::size_t from = std::max(posed, args.from.empty() ? 0 : first_frame(args.from, whole.rate));
+  require(from < in_file, "--from ", args.from, " is frame ", from, " of ", args.prior, ", which has ",
+          in_file, " frames at ", brief(whole.rate), " per second (",
+          duration(static_cast<double>(in_file) / whole.rate), ")");
+  const motion::Motion rest = motion::resample(slice(whole, from - posed, in_file - from), format.rate);
+  require(rest.frames >= args.seed_frames, "the prior ", args.prior, " has ",
+          counted(in_file - from, "frame"), " from frame ", from, " on, ",
+          duration(static_cast<double>(in_file - from) / whole.rate), " at ", brief(whole.rate),
+          " per second; at the model's ", brief(format.rate), " per second they are ", rest.frames,
+          ", and the seed is to be of ", args.seed_frames, " (",
+          duration(static_cast<double>(args.seed_frames) / format.rate), "): give a longer clip",
+          args.from.empty() ? "" : ", an earlier --from", ", or --seed-frames ", rest.frames, " at most");
+  const std::size_t after = std::min(args.frames, rest.frames - args.seed_frames);
+  return {
+      slice(rest, 0, args.seed_frames), slice(rest, args.seed_frames, after),
+      fmt::format("frame {}{}", from, posed > 0 && from == posed ? " (after the T-pose at its start)" : "")};
+}
+
+/// The frames after the seed, counted from 1, at which the motion-prediction papers measure, as near as the
+/// rate has them; those that are further off than a fifth are left out.
+std::vector<std::pair<int, std::size_t>> measured_frames(double rate, std::size_t frames) {
+  std::vector<std::pair<int, std::size_t>> out;
+  for (const int ms : {80, 160, 320, 400, 560, 1000}) {
+    const auto frame = static_cast<std::size_t>(std::lround(ms * 1e-3 * rate));
+    if (frame == 0 || frame > frames) continue;
+    const double true_ms = 1e3 * static_cast<double>(frame) / rate;
+    if (std::abs(true_ms / ms - 1) <= 0.2 && (out.empty() || out.back().second != frame))
+      out.emplace_back(ms, frame);
+  }
+  return out;
+}
+
+/// Frames that the errors are taken over: a second of what the clip does next.
+std::size_t measured_length(const Prior& prior) {
+  const auto second = static_cast<std::size_t>(std::max(1L, std::lround(prior.seed.rate)));
+  return std::min(prior.truth.frames, second);
+}
+
+/// The last frame of the seed, held.
+motion::Motion held(const motion::Motion& seed, std::size_t frames) {
+  motion::Motion out = slice(seed, seed.frames - 1, 1);
+  while (out.frames < frames) out = join(std::move(out), slice(seed, seed.frames - 1, 1));
+  return out;
+}
+
+/// Errors of the continuations against what the clip does next; `made` are seed and continuation.
+void print_errors(const Prior& prior, const std::vector<motion::Motion>& made, std::size_t root) {
+  const std::size_t frames = measured_length(prior), count = made.size();
+  const auto times = measured_frames(prior.seed.rate, frames);
+  if (times.empty()) {
+    fmt::print("no error against the clip: {}\n",
+               prior.truth.frames == 0
+                   ? "it ends with the seed"
+                   : "it ends too soon, or the model's rate is too low for the times at which one measures");
+    return;
+  }
+  const motion::Motion truth = slice(prior.truth, 0, frames);
+  const std::vector<double> still = euler_errors(truth, held(prior.seed, frames), root);
+  std::vector<double> mean(frames, 0.0), best(frames, std::numeric_limits<double>::infinity());
+  for (const motion::Motion& motion : made) {
+    const std::vector<double> errors = euler_errors(truth, slice(motion, prior.seed.frames, frames), root);
+    for (std::size_t f = 0; f < frames; ++f) {
+      mean[f] += errors[f] / static_cast<double>(count);
+      best[f] = std::min(best[f], errors[f]);
+    }
+  }
+  std::vector<std::string> head{"ms"};
+  std::vector<std::vector<std::string>> rows{{"true ms"}, {"zero velocity"}, {"model"}};
+  if (count > 1)
+    rows[2][0] = fmt::format("mean of {}", count), rows.push_back({fmt::format("best of {}", count)});
+  for (const auto& [ms, frame] : times) {
+    head.push_back(fmt::format("{}", ms));
+    rows[0].push_back(fmt::format("{:.0f}", 1e3 * static_cast<double>(frame) / prior.seed.rate));
+    rows[1].push_back(fmt::format("{:.2f}", still[frame - 1]));
+    rows[2].push_back(fmt::format("{:.2f}", mean[frame - 1]));
+    if (count > 1) rows[3].push_back(fmt::format("{:.2f}", best[frame - 1]));
+  }
+  fmt::print(
+      "error against what the clip does next (Euler angles as in the motion-prediction papers, over {}):\n",
+      counted(frames, "frame"));
+  print_table(head, rows, "l" + std::string(times.size(), 'r'), "  ");
+}
+
+/// What a page and a picture show of a motion that begins with the seed.
+view::ViewedMotion viewed(const std::string& title, const motion::Motion& motion, std::size_t seed_frames,
+                          double rate) {
+  const double model_rate = motion.rate;
+  view::ViewedMotion out{title, for_page(motion, rate), seed_frames};
+  if (rate > 0)  // those up to the seed's last one
+    out.seed_frames = motion::resampled_frames(seed_frames, model_rate, rate);
+  return out;
+}
+
+int complete(const CompleteArgs& args) {
+  check_text(args.text);
+  check_samples(args.first_sample, args.count);
+  const fs::path file = model_file(args.model);
+  const Context context;
+  const Dvgan model = Dvgan::load(context, file);
+  model.rnn();  // refuses where there is none
+  const motion::MotionFormat& format = model.format();
+  const Prior prior = read_prior(args, format);
+  warn_of_unknown_words(format.vocabulary, args.text);
+  const fs::path out = args.out;
+  make_folder(out);
+
+  const std::string clip = fs::path(args.prior).stem().string();
+  const bool shows = !args.html.empty() || !args.png.empty();
+  StreamJob job{.files = sample_files(out, clip + "_" + slug(args.text), args.first_sample, args.count),
+                .before = prior.seed,
+                .frames = args.frames,
+                .rate = args.rate,
+                .kept = prior.seed.frames + measured_length(prior)};
+  if (shows) job.kept = std::max(job.kept, shown_frames(format.rate, args.rate));
+  for (std::size_t i = 0; i < args.count; ++i)
+    job.characters.push_back({.text = args.text,
+                              .seed = args.seed,
+                              .sample = static_cast<std::uint32_t>(args.first_sample + i),
+                              .prior = &prior.seed});
+  catch_signals();
+  const auto made = write_streamed(model, job);
+  if (!made) return stopped(0);
+
+  const double seconds = static_cast<double>(args.frames) / format.rate;
+  fmt::print("\"{}\": {}\n", args.text, named(job.files));
+  fmt::print("wrote {}: {} of {} from {} on, then {} ({}) that the model made, seed {}\n",
+             counted(args.count, "BVH file"), counted(prior.seed.frames, "frame"), clip, prior.from,
+             args.frames, duration(seconds), args.seed);
+  print_errors(prior, *made, format.layout.root());
+  if (!shows) return 0;
+  std::vector<view::ViewedMotion> shown;
+  if (prior.truth.frames > 0)
+    shown.push_back(
+        viewed(clip + ", as it goes on", join(prior.seed, prior.truth), prior.seed.frames, args.rate));
+  for (std::size_t i = 0; i < made->size(); ++i)
+    shown.push_back(
+        viewed(args.count > 1 ? fmt::format("{} ({})", args.text, args.first_sample + i) : args.text,
+               (*made)[i], prior.seed.frames, args.rate));
+  if (prior.seed.frames + args.frames > shown_frames(format.rate, args.rate))
+    fmt::print("only the first {} frames of each motion are shown below\n", most_shown);
+  if (!args.html.empty()) show_page(args.html, shown, clip + " completed by " + file.string());
+  if (!args.png.empty()) show_strip(args.png, shown);
+  return 0;
+}
+
+}  // namespace
+
+void add_complete(CLI::App& app, Job& job) {
+  CLI::App* verb = app.add_subcommand(
+      "complete",
+      "Go on from the first frames of a clip, as a text says.\n"
+      "Each file holds the seed, at the model's rate and in the clip's own body, and then what the model "
+      "made\n"
+      "(CLIP_walk-slowly_000.bvh); files that are there are replaced. Where the clip itself goes on, errors\n"
+      "against it are printed. Needs a model with an RNN generator.");
+  const auto args = std::make_shared<CompleteArgs>();
+  const auto option = [&](const char* name, auto& member, const char* text) {
+    return verb->add_option(name, member, text);
+  };
+  option("MODEL", args->model, "model file, or the --save folder of a training")->required()->type_name("");
+  option("--prior", args->prior, "BVH clip to go on from, of the model's skeleton")
+      ->required()
+      ->type_name("CLIP.bvh");
+  option("--text", args->text, "what to do next")->required()->type_name("TEXT");
+  option("--seed-frames", args->seed_frames, "frames of the clip to start with, at the model's rate")
+      ->check(positive())
+      ->capture_default_str();
+  option("--frames", args->frames, "frames to make after them; any number")
+      ->check(positive())
+      ->capture_default_str();
+  option("--from", args->from,
+         "where in the clip the seed starts: a frame (240) or seconds (2.5s) [its start]")
+      ->type_name("FRAME");
+  option("--count", args->count, "different continuations")->check(positive())->capture_default_str();
+  option("--seed", args->seed, "another seed gives other continuations")
+      ->check(not_negative())
+      ->capture_default_str();
+  option("--first-sample", args->first_sample, "number of the first continuation of the seed")
+      ->check(not_negative())
+      ->capture_default_str();
+  option("--rate", args->rate, "frames per second of the files, by interpolation [the model's]")
+      ->check(CLI::Range(1e-3, 1e4))
+      ->type_name("HZ");
+  option("--out", args->out, "folder to write to; made if missing")->capture_default_str()->type_name("DIR");
+  option("--html", args->html, "also write a page: the clip, then the continuations beside it")
+      ->type_name("FILE");
+  option("--png", args->png, "also write a picture of their poses")->type_name("FILE");
+  verb->callback([&job, args] { job = [args] { return complete(*args); }; });
+}
+
+}  // namespace motiongan::command

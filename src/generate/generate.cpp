@@ -1,0 +1,203 @@
+// motiongan generate: new motion for a text, or for a class.
+#include "generate/generate_actions.hpp"
+#include "motiongan/models/action_gan.hpp"
+#include "motiongan/models/dvgan.hpp"
+#include "motiongan/formats/bvh.hpp"
+#include "motiongan/motion/motion.hpp"
+#include "prompt.hpp"
+#include "show.hpp"
+#include "signals.hpp"
+#include "generate/streaming.hpp"
+
+namespace motiongan::command {
+namespace {
+
+struct GenerateArgs {
+  std::string model, prompts, out = ".", html, png, drift;
+  std::vector<std::string> texts;
+  GenerateOptions options;
+  double rate = 0;
+};
+
+/// The texts of the options, then those of the file, one a line.
+std::vector<std::string> all_texts(const GenerateArgs& args) {
+  std::vector<std::string> texts = args.texts;
+  for (const std::string& text : texts) check_text(text);
+  if (!args.prompts.empty()) {
+    const std::string all = motion::read_text(args.prompts, "file of prompts");
+    std::size_t line = 1;
+    for (std::size_t at = 0; at < all.size(); ++line) {
+      std::string text = all.substr(at, all.find('\n', at) - at);
+      at += text.size() + 1;
+      text.erase(text.find_last_not_of(" \t\r") + 1);
+      if (text.empty()) continue;
+      require(!motion::split_words(text).empty(), args.prompts, ":", line, ": \"", text,
+              "\" has no words; describe a motion");
+      texts.push_back(text);
+    }
+    require(!texts.empty(), args.prompts, " has no prompt; write one a line");
+  }
+  require(!texts.empty(), "no text is given; use --text \"walk\" (as often as you like) or --prompts FILE");
+  for (const std::string& text : texts)
+    require(motion::is_utf8(text), "the text \"", text, "\" is not UTF-8");
+  return texts;
+}
+
+/// Motions of one text, all of them made before the first is written: for generators that make a window at
+/// once. Returns what there is to show.
+std::vector<motion::Motion> write_whole(const Dvgan& model, const std::string& text, const GenerateArgs& args,
+                                        const std::vector<fs::path>& files, DriftReport* drift) {
+  std::vector<motion::Motion> motions;
+  for (const std::vector<float>& poses : model.generate_poses(text, args.options)) {
+    if (drift != nullptr) {
+      DriftMeter meter(model.format());
+      meter.add(poses, poses.size() / model.format().dof());
+      drift->add(meter);
+    }
+    motions.push_back(model.format().to_motion(poses));
+    const motion::Motion& made = motions.back();
+    motion::write_bvh(files[motions.size() - 1], args.rate > 0 ? motion::resample(made, args.rate) : made);
+  }
+  return motions;
+}
+
+/// The same frame by frame, of any length.
+std::optional<std::vector<motion::Motion>> write_long(const Dvgan& model, const std::string& text,
+                                                      const GenerateArgs& args, std::size_t frames,
+                                                      const std::vector<fs::path>& files,
+                                                      DriftReport* drift) {
+  StreamJob job{.files = files, .frames = frames, .rate = args.rate};
+  for (std::size_t i = 0; i < files.size(); ++i)
+    job.characters.push_back({.text = text,
+                              .seed = args.options.seed,
+                              .sample = static_cast<std::uint32_t>(args.options.first_sample + i)});
+  if (!args.html.empty() || !args.png.empty()) job.kept = shown_frames(model.format().rate, args.rate);
+  return write_streamed(model, job, drift);
+}
+
+int generate(const GenerateArgs& args, const fs::path& file) {
+  const std::vector<std::string> texts = all_texts(args);
+  check_samples(args.options.first_sample, args.options.count);
+  const Context context;
+  const Dvgan model = Dvgan::load(context, file);
+  const motion::MotionFormat& format = model.format();
+  const std::size_t made = args.options.frames > 0 ? args.options.frames : format.frames;
+  if (made != format.frames) model.rnn();  // refuses where there is none
+  const double rate = args.rate > 0 ? args.rate : format.rate;
+  const std::size_t frames = motion::resampled_frames(made, format.rate, rate);
+  // A window that is cut out of a longer motion cannot come frame by frame.
+  const bool streamed = model.is_recurrent() && !(model.options().cuts() && made == format.frames);
+  const fs::path out = args.out;
+  make_folder(out);
+
+  DriftReport drift;
+  DriftReport* const measured = !args.drift.empty() || made > 4 * format.frames ? &drift : nullptr;
+  if (streamed) catch_signals();
+  std::vector<view::ViewedMotion> shown;
+  std::set<std::string> names;
+  std::size_t files_made = 0;
+  for (const std::string& text : texts) {
+    warn_of_unknown_words(format.vocabulary, text);
+    std::string name = slug(text);
+    for (std::size_t again = 2; !names.insert(name).second; ++again)
+      name = fmt::format("{}-{}", slug(text), again);
+    const std::vector<fs::path> files =
+        sample_files(out, name, args.options.first_sample, args.options.count);
+    const auto motions = streamed ? write_long(model, text, args, made, files, measured)
+                                  : write_whole(model, text, args, files, measured);
+    if (!motions) return stopped(files_made);
+    files_made += files.size();
+    fmt::print("\"{}\": {}\n", text, named(files));
+    if (args.html.empty() && args.png.empty()) continue;
+    for (std::size_t i = 0; i < motions->size(); ++i)
+      shown.push_back(
+          {args.options.count > 1 ? fmt::format("{} ({})", text, args.options.first_sample + i) : text,
+           for_page((*motions)[i], args.rate)});
+  }
+  fmt::print("wrote {} of {} at {} per second ({} each), seed {}\n", counted(files_made, "BVH file"),
+             counted(frames, "frame"), brief(rate), duration(static_cast<double>(frames) / rate),
+             args.options.seed);
+  if (measured != nullptr) drift.print();
+  if (!args.drift.empty()) {
+    drift.write_csv(args.drift);
+    fmt::print("wrote {}: the drift of each second\n", args.drift);
+  }
+  if (!shown.empty() && shown.front().motion.frames < frames)
+    fmt::print("only the first {} frames of each motion are shown below\n", most_shown);
+  if (!args.html.empty()) show_page(args.html, shown, "generated by " + file.string());
+  if (!args.png.empty()) show_strip(args.png, shown);
+  return 0;
+}
+
+/// For whichever kind of model it is; refuses options of the other kind.
+int generate_either(const GenerateArgs& args, ActionGenerateArgs actions, const CLI::App& verb) {
+  const fs::path file = model_file(args.model);
+  if (!ActionGan::describes(io::SafeTensors::read(file))) {
+    const std::string wrong = given_action_options(verb);
+    require(wrong.empty(), file.string(), " makes motion for a text: it has no classes, and takes no ", wrong,
+            "; use --text \"walk\"");
+    return generate(args, file);
+  }
+  for (const char* name : {"--text", "--prompts", "--drift"})
+    require(verb.count(name) == 0, file.string(), " makes motion of classes: it takes no ", name,
+            "; use --class NAME");
+  actions.model = args.model, actions.out = args.out, actions.html = args.html, actions.png = args.png;
+  actions.count = args.options.count, actions.frames = args.options.frames;
+  actions.first_sample = args.options.first_sample, actions.seed = args.options.seed,
+  actions.rate = args.rate;
+  return generate_actions(actions, verb, file);
+}
+
+}  // namespace
+
+void add_generate(CLI::App& app, Job& job) {
+  CLI::App* verb = app.add_subcommand(
+      "generate",
+      "Make new motion for a text, or for classes from a second of motion on, and write it as files.\n"
+      "Files are called by the text and the number of the sample (walk-slowly_000.bvh); those that are there "
+      "are\n"
+      "replaced. The same model, text, seed and sample give the same motion, whatever --count is. A model "
+      "with\n"
+      "an RNN generator makes any number of frames; they are written as they are made.");
+  const auto args = std::make_shared<GenerateArgs>();
+  const auto actions = std::make_shared<ActionGenerateArgs>();
+  verb->add_option("MODEL", args->model, "model file, or the --save folder of a training")
+      ->required()
+      ->type_name("");
+  verb->add_option("--text", args->texts, "what to show; may be given several times")
+      ->type_name("TEXT")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_option("--prompts", args->prompts, "file with a text on each line")->type_name("FILE");
+  verb->add_option("--count", args->options.count, "motions for each text, or of a schedule of classes")
+      ->check(positive())
+      ->capture_default_str();
+  verb->add_option("--seed", args->options.seed, "another seed gives other motions")
+      ->check(not_negative())
+      ->capture_default_str();
+  verb->add_option("--first-sample", args->options.first_sample, "number of the first motion of the seed")
+      ->check(not_negative())
+      ->capture_default_str();
+  verb->add_option("--frames", args->options.frames,
+                   "frames of each motion, at the model's rate; other numbers need an RNN generator [the "
+                   "model's]")
+      ->check(positive())
+      ->type_name("N");
+  verb->add_option("--drift", args->drift,
+                   "table to write: how far poses are from those of the training, second by second")
+      ->type_name("FILE.csv");
+  verb->add_option("--rate", args->rate, "frames per second of the files, by interpolation [the model's]")
+      ->check(CLI::Range(1e-3, 1e4))
+      ->type_name("HZ");
+  verb->add_option("--out", args->out, "folder to write to; made if missing")
+      ->capture_default_str()
+      ->type_name("DIR");
+  verb->add_option("--html", args->html, "also write a page that plays the motions")->type_name("FILE");
+  verb->add_option("--png", args->png, "also write a picture of their poses")->type_name("FILE");
+  add_action_options(*verb, *actions);
+  verb->callback([&job, args, actions, verb] {
+    job = [args, actions, verb] { return generate_either(*args, *actions, *verb); };
+  });
+}
+
+}  // namespace motiongan::command

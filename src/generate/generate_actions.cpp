@@ -1,0 +1,204 @@
+// motiongan generate, for a model of classes: from a second of motion on, by a schedule.
+#include "generate/generate_actions.hpp"
+
+#include "action_files.hpp"
+#include "generate/action_priors.hpp"
+#include "motiongan/data/clip_source.hpp"
+#include "motiongan/sample/action_generate.hpp"
+#include "motiongan/view/heat_map.hpp"
+#include "prompt.hpp"
+#include "show.hpp"
+
+namespace motiongan::command {
+namespace {
+
+constexpr std::size_t at_a_time = 64;  // characters
+
+/// How long it goes on, in seconds; 0 where the schedule says so.
+double asked_seconds(const ActionGenerateArgs& args, double rate) {
+  require(args.seconds <= 0 || args.frames == 0, "give --seconds or --frames, not both");
+  if (args.frames > 0) return static_cast<double>(args.frames) / rate;
+  if (args.seconds > 0) return args.seconds;
+  const std::size_t comma = args.schedule.rfind(','), colon = args.schedule.rfind(':');
+  const bool timed = colon != std::string::npos && (comma == std::string::npos || colon > comma);
+  return timed ? 0 : 10;
+}
+
+std::vector<GivenPrior> find_priors(const ActionGenerateArgs& args, const CLI::App& verb,
+                                    const fs::path& file, const ActionGan& model, std::size_t label) {
+  ActionDataArgs data;
+  data.folder = args.data;
+  data.bones = args.bones;
+  const motion::PositionFormat& format = model.format();
+  if (!args.from.empty()) {
+    fill_in_choices(data);
+    require(args.data.empty(), "give --from or --data, not both");
+    std::vector<GivenPrior> given, out;
+    for (const std::string& clip : args.from)
+      for (const double at : args.at.empty() ? std::vector<double>{0} : args.at)
+        given.push_back(read_prior(clip, format, data, at));
+    require(args.count == 1 || model.options().noise_dim > 0, "--count ", args.count,
+            ": this model has no noise, so that a prior and a class give one motion; give several clips with "
+            "--from, ",
+            "several times with --at, or leave --from out for priors drawn from the training's clips");
+    for (const GivenPrior& prior : given) out.insert(out.end(), args.count, prior);
+    return out;
+  }
+  require(args.at.empty(), "--at needs --from: it says where in that clip the motion starts");
+  const fs::path run = fs::is_directory(args.model) ? fs::path(args.model) : file.parent_path();
+  require(fs::exists(RunFiles{run}.split()),
+          "give the second to go on from with --from CLIP: ", file.string(),
+          " lies in no folder of a run, from whose clips one could be drawn");
+  take_data_of_run(
+      data, verb, run,
+      "give the second to go on from with --from CLIP, or the clips to draw one from with --data FOLDER");
+  if (!args.data.empty()) data.folder = args.data, data.procedural = 0;
+  fill_in_choices(data);
+  return draw_priors(run, format, data, label, args.seed, args.first_sample, args.count);
+}
+
+/// The generator's attention in the first second of the first few characters.
+void draw_attention(const ActionGenerateArgs& args, const ActionGan& model,
+                    const std::vector<GivenPrior>& priors, std::size_t label) {
+  const motion::PositionFormat& format = model.format();
+  const std::size_t count = std::min<std::size_t>(4, priors.size()), frames = format.frames,
+                    dof = format.dof();
+  std::vector<float> poses(frames * count * dof);
+  for (std::size_t f = 0; f < frames; ++f)
+    for (std::size_t b = 0; b < count; ++b)
+      std::copy_n(&priors[b].prior.poses[f * dof], dof, &poses[(f * count + b) * dof]);
+  const NoGrad values_only;
+  const std::vector<float> values =
+      model.generator()
+          .attention_map(Var::constant(Tensor::from(model.context(), {frames, count, dof}, poses)),
+                         Var::constant(one_hot(model.context(), std::vector<std::size_t>(count, label),
+                                               format.classes.size())),
+                         model.noise(count, {.seed = args.seed,
+                                             .first_sample = static_cast<std::uint32_t>(args.first_sample)}))
+          .value()
+          .to_host();  // [count, T, T]
+  std::vector<view::HeatMap> maps;
+  for (std::size_t b = 0; b < count; ++b) {
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(b * frames * frames);
+    maps.push_back(
+        {priors[b].from, frames, frames, {first, first + static_cast<std::ptrdiff_t>(frames * frames)}});
+  }
+  make_folder_of(args.attention_map);
+  write_png(args.attention_map,
+            view::heat_map(maps, {.title = "generator's attention, class " + format.classes[label],
+                                  .row_label = "frame that looks",
+                                  .column_label = "frame looked at"}));
+  fmt::print("wrote {}: what frames of the first second look at (gamma {})\n", args.attention_map,
+             brief(model.generator().attention()->gamma.item(), 3));
+}
+
+std::string name_of(const motion::PositionFormat& format, const ActionSchedule& schedule) {
+  std::string classes;
+  for (const ActionPiece& piece : schedule) classes += format.classes[piece.label] + " ";
+  const std::string name = slug(classes);
+  return name.empty() ? "motion" : name;
+}
+
+}  // namespace
+
+void add_action_options(CLI::App& verb, ActionGenerateArgs& a) {
+  const auto option = [&](const char* name, auto& member, const char* text) {
+    return verb.add_option(name, member, text)->group("Models of classes");
+  };
+  option("--class", a.schedule, "what to do: a class, or one after another, such as walk:3s,run:90 (frames)")
+      ->type_name("SCHEDULE");
+  option("--seconds", a.seconds, "how long, where --class does not say [10]")->check(positive());
+  option("--from", a.from,
+         "BVH, CSV or NPY clip with the second to go on from; may be given several times [drawn "
+         "from the clips that the training kept for testing]")
+      ->type_name("CLIP")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  option("--at", a.at, "where in the clip that second starts, in seconds; may be given several times [0]")
+      ->check(CLI::Range(0.0, 1e6))
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  option("--data", a.data, "folder of the clips to draw from [that of the training]")->type_name("FOLDER");
+  option("--bones", a.bones, "bone list of CSV and NPY clips [bones.tsv beside them]")->type_name("FILE");
+  add_format_option(verb, a.format);
+  verb.get_option("--format")->group("Models of classes");
+  verb.add_flag("--prior,!--no-prior", a.with_prior, "begin each file with the second that was given [on]")
+      ->group("Models of classes");
+  option("--attention-map", a.attention_map,
+         "picture to write: which frames of the first second look at which")
+      ->type_name("FILE.png");
+}
+
+std::string given_action_options(const CLI::App& verb) {
+  std::string out;
+  for (const char* name : {"--class", "--seconds", "--from", "--at", "--data", "--bones", "--format",
+                           "--prior", "--attention-map"})
+    if (verb.count(name) > 0) out += (out.empty() ? "" : ", ") + std::string(name);
+  return out;
+}
+
+int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const fs::path& file) {
+  const Context context;
+  const ActionGan model = ActionGan::load(context, file);
+  const motion::PositionFormat& format = model.format();
+  require(!args.schedule.empty(),
+          "no class is given; use --class NAME or --class NAME:3s,OTHER:5s. The classes are: ",
+          quoted_list(format.classes));
+  const ActionSchedule schedule =
+      parse_action_schedule(args.schedule, format, asked_seconds(args, format.rate));
+  check_samples(args.first_sample, args.count);
+  const std::size_t first_label = schedule.front().label;
+  if (!args.attention_map.empty())
+    require(!model.is_baseline() && model.options().attention,
+            "--attention-map: this model has no attention");
+  const std::vector<GivenPrior> priors = find_priors(args, verb, file, model, first_label);
+  const fs::path out = args.out;
+  make_folder(out);
+  if (args.format != "bvh") write_bones_beside(out, priors.front().prior.skeleton);
+
+  const std::string name = name_of(format, schedule);
+  std::vector<fs::path> files;
+  for (std::size_t i = 0; i < priors.size(); ++i)
+    files.push_back(out / fmt::format("{}_{:03}.{}", name, args.first_sample + i, args.format));
+  const bool shows = !args.html.empty() || !args.png.empty();
+  std::vector<view::ViewedMotion> shown;
+  for (std::size_t first = 0; first < priors.size(); first += at_a_time) {
+    const std::size_t count = std::min(at_a_time, priors.size() - first);
+    std::vector<ActionPrior> some;
+    for (std::size_t i = 0; i < count; ++i) some.push_back(priors[first + i].prior);
+    const std::vector<motion::PositionClip> clips =
+        generate(model, some, schedule,
+                 {.with_prior = args.with_prior,
+                  .seed = args.seed,
+                  .first_sample = static_cast<std::uint32_t>(args.first_sample + first)});
+    std::vector<motion::Motion> motions(count);
+    motion::in_two_threads(count, [&](std::size_t i) {
+      if (shows || args.format == "bvh")
+        motions[i] = motion_from_positions(clips[i], priors[first + i].reference);
+      write_action_clip(files[first + i], clips[i], motions[i], args.rate);
+    });
+    for (std::size_t i = 0; shows && i < count; ++i) {
+      const std::size_t given = !args.with_prior ? 0
+                                : args.rate > 0
+                                    ? motion::resampled_frames(format.frames, format.rate, args.rate)
+                                    : format.frames;
+      shown.push_back({fmt::format("{} ({})", args.schedule, priors[first + i].from),
+                       for_page(motions[i], args.rate), given});
+    }
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t i = 0; i < std::min<std::size_t>(files.size(), 20); ++i)
+    rows.push_back({files[i].string(), priors[i].from});
+  print_table({"file", "goes on from"}, rows, "ll");
+  if (files.size() > rows.size()) fmt::print("and {} more\n", files.size() - rows.size());
+  const std::size_t made = frames_of(schedule);
+  fmt::print("wrote {}: {}{} ({}) that the model made\n", counted(files.size(), "file"),
+             args.with_prior ? fmt::format("{} that were given, then ", counted(format.frames, "frame")) : "",
+             made, duration(static_cast<double>(made) / format.rate));
+  if (!args.attention_map.empty()) draw_attention(args, model, priors, first_label);
+  if (!args.html.empty()) show_page(args.html, shown, "generated by " + file.string());
+  if (!args.png.empty()) show_strip(args.png, shown);
+  return 0;
+}
+
+}  // namespace motiongan::command

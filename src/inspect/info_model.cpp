@@ -1,0 +1,152 @@
+// What safetensors files hold: models, checkpoints, runs and others.
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "inspect/info.hpp"
+#include "motiongan/data/motion_format_json.hpp"
+#include "motiongan/data/position_format_json.hpp"
+#include "motiongan/io/safetensors.hpp"
+#include "motiongan/train/checkpoint.hpp"
+#include "motiongan/train/csv_log.hpp"
+#include "motiongan/train/run.hpp"
+
+namespace motiongan::command {
+namespace {
+
+std::string millions(std::size_t n) {
+  return n < 1000000 ? std::to_string(n) : fmt::format("{} million", brief(1e-6 * static_cast<double>(n), 3));
+}
+
+std::size_t count_below(const io::SafeTensors& file, std::string_view prefix) {
+  std::size_t n = 0;
+  for (const auto& [name, tensor] : file.tensors)
+    if (name.starts_with(prefix)) n += tensor.count();
+  return n;
+}
+
+/// Prints texts with `gap` between them, on lines of at most 100 characters below the fact's name.
+void print_wrapped(std::string_view name, const std::vector<std::string>& texts, std::string_view gap) {
+  std::string line;
+  const auto flush = [&] {
+    line.erase(line.find_last_not_of(' ') + 1);
+    print_fact(name, line);
+    name = "";
+    line.clear();
+  };
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    const std::string text = texts[i] + std::string(i + 1 < texts.size() ? gap : "");
+    if (!line.empty() && line.size() + text.size() > 100) flush();
+    line += text;
+  }
+  if (!line.empty()) flush();
+}
+
+/// The options of a run, as the command or the library writes them into its files.
+void print_options(std::string_view fact, const std::string& json) {
+  const auto options = nlohmann::json::parse(json, nullptr, false);
+  if (!options.is_object()) return;
+  std::vector<std::string> texts;
+  for (const auto& [key, value] : options.items()) {
+    std::string name = key.starts_with("--") ? key.substr(2) : key;
+    std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    if (value.is_boolean()) text = value.get<bool>() ? "on" : "off";
+    if (text.empty() || (name == "procedural" && text == "0")) continue;
+    if (name == "FOLDER") name = "folder";
+    std::replace(name.begin(), name.end(), '_', '-');
+    texts.push_back(fmt::format("{} {}", name, text));
+  }
+  print_wrapped(fact, texts, ", ");
+}
+
+void print_positions(const motion::PositionFormat& format) {
+  const double second = static_cast<double>(format.frames) / format.rate;
+  print_fact("motion", fmt::format("{} frames from {} before, at {} per second ({})", format.frames,
+                                   format.frames, brief(format.rate), duration(second)));
+  print_fact("skeleton",
+             fmt::format("{}, root {}; {} of a pose change{}", counted(format.skeleton().size(), "joint"),
+                         format.skeleton().joints.front().name, counted(format.dof(), "number"),
+                         format.layout.root_track() ? ", steps, turns and height of the root among them"
+                                                    : "; the root stays where it is"));
+  print_wrapped("classes", format.classes, ", ");
+}
+
+/// For a model of classes, or of texts.
+void print_format(const io::SafeTensors& file, const std::string& where) {
+  const auto text = file.metadata.find("format");
+  require(text != file.metadata.end(), where, ": the model has no motion format in its metadata");
+  const auto json = nlohmann::json::parse(text->second, nullptr, false);
+  require(!json.is_discarded(), where, ": the model's motion format cannot be read");
+  const std::string& model = file.metadata.at("motiongan_model");
+  if (model == "attention_generator" || model == "lstm_baseline")
+    return print_positions(io::position_format_from_json(json));
+  const motion::MotionFormat format = io::motion_format_from_json(json);
+  print_fact("motion", fmt::format("{} frames at {} per second ({})", format.frames, brief(format.rate),
+                                   duration(static_cast<double>(format.frames) / format.rate)));
+  print_fact("skeleton",
+             fmt::format("{}, root {}; {} of a pose change{}", counted(format.skeleton().size(), "joint"),
+                         format.skeleton().joints[format.layout.root()].name, counted(format.dof(), "number"),
+                         format.layout.root_position() ? ", the root's position among them"
+                                                       : "; the root stays where it is"));
+  print_fact("words", fmt::format("{}, and {} for all others:", format.vocabulary.size() - 1,
+                                  motion::Vocabulary::unknown));
+  const std::vector<std::string>& words = format.vocabulary.words();
+  print_wrapped("", {words.begin() + 1, words.end()}, " ");
+}
+
+void print_other(const io::SafeTensors& file) {
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& [name, tensor] : file.tensors)
+    rows.push_back({name, tensor.dtype, io::shape_text(tensor.shape), std::to_string(tensor.count())});
+  print_table({"tensor", "type", "shape", "numbers"}, rows, "lllr", "  ");
+  if (!file.metadata.empty()) fmt::print("  metadata\n");
+  for (const auto& [key, value] : file.metadata)
+    fmt::print("    {}: {}\n", key, value.size() > 300 ? value.substr(0, 300) + "..." : value);
+}
+
+}  // namespace
+
+void print_tensors(const fs::path& path) {
+  const std::string where = path.string();
+  const io::SafeTensors file = io::SafeTensors::read(path);
+  const auto model = file.metadata.find("motiongan_model");
+  const bool checkpoint = file.metadata.contains("iteration") && model != file.metadata.end();
+  const std::size_t numbers = count_below(file, "");
+  if (model == file.metadata.end()) {
+    fmt::print("{}: {} with {} numbers\n", where, counted(file.tensors.size(), "tensor"), millions(numbers));
+    print_other(file);
+    return;
+  }
+  fmt::print("{}: {}\n", where, checkpoint ? "a checkpoint of a training run" : "a model, " + model->second);
+  if (checkpoint) {
+    print_fact("iteration", file.metadata.at("iteration"));
+    for (const char* network : {"generator", "critic", "classifier"})
+      if (const std::size_t n = count_below(file, std::string(network) + "."); n > 0)
+        print_fact(network, millions(n) + " parameters");
+  } else {
+    print_fact("parameters", millions(numbers));
+  }
+  if (const auto at = file.metadata.find("options"); at != file.metadata.end())
+    print_options("model", at->second);
+  if (checkpoint) {
+    const RunRecord record = read_run_record(file, where);
+    const auto note = record.notes.find("options");
+    print_options("training", note != record.notes.end() ? note->second
+                                                         : detail::checkpoint_text(file, "training", where));
+  }
+  print_format(file, where);
+}
+
+void print_run(const fs::path& folder) {
+  const RunFiles files{folder};
+  fmt::print("{}: a training run; its log is {}\n", folder.string(), files.log().string());
+  print_tensors(files.checkpoint());
+  if (!fs::exists(files.log())) return;
+  const CsvTable log = read_csv_log(files.log());
+  if (log.rows.empty()) return;
+  std::vector<std::string> texts;
+  for (std::size_t c = 0; c < log.columns.size(); ++c)
+    texts.push_back(fmt::format("{} {}", log.columns[c], brief(log.rows.back()[c])));
+  print_wrapped("last row", texts, ", ");
+}
+
+}  // namespace motiongan::command

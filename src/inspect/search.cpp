@@ -1,0 +1,269 @@
+// motiongan search: the clips of a collection that move as a text says.
+#include <future>
+#include <nlohmann/json.hpp>
+
+#include "motiongan/search/collection.hpp"
+#include "motiongan/search/ranking.hpp"
+#include "motiongan/models/action_gan.hpp"
+#include "motiongan/models/dvgan.hpp"
+#include "motiongan/formats/bvh.hpp"
+#include "motiongan/data/captions.hpp"
+#include "prompt.hpp"
+#include "show.hpp"
+
+namespace motiongan::command {
+namespace {
+
+struct SearchArgs {
+  std::string model, text, collection, index, captions, json, html, out;
+  std::size_t hypotheses = 16, top = 10, hop = 0;
+  std::uint64_t seed = 1;
+  bool windows = false;
+};
+
+/// What was found, as it is told.
+struct Result {
+  std::string clip, path;
+  std::vector<std::string> captions;
+  double begin = 0, end = 0;  // seconds of the file
+  SearchHit hit;
+};
+
+struct Found {
+  std::vector<Result> results;
+  std::vector<std::vector<float>> hypotheses;
+  std::size_t clips = 0, windows = 0, left_out = 0, hop = 0;
+  double median = 0;
+};
+
+/// A clip is called by its path below the collection, without extension.
+std::string clip_name(const std::string& path) { return fs::path(path).replace_extension().generic_string(); }
+
+std::vector<std::string> captions_of(const motion::Captions& captions, const std::string& path) {
+  for (const std::string& key : {fs::path(path).stem().string(), clip_name(path)})
+    if (const auto found = captions.find(key); found != captions.end()) return found->second;
+  return {};
+}
+
+Found find(const Dvgan& model, const SearchArgs& args, const SearchCollection& collection,
+           std::vector<std::vector<float>> hypotheses) {
+  const SearchIndex& index = collection.index;
+  const motion::MotionFormat& format = model.format();
+  Found found;
+  const SearchOptions options{args.top, args.hop, args.windows};
+  found.hop = search_hop(format, options);
+  found.hypotheses = std::move(hypotheses);
+  const SearchRanking ranking = motiongan::search(model.context(), index, found.hypotheses, options);
+  for (const SearchClip& clip : index.clips()) clip.left_out.empty() ? ++found.clips : ++found.left_out;
+  found.windows = ranking.windows;
+  found.median = ranking.median;
+  const fs::path file = captions_for(args.collection, args.captions);
+  const motion::Captions captions = file.empty() ? motion::Captions{} : motion::read_captions(file);
+  for (const SearchHit& hit : ranking.hits) {
+    const SearchClip& clip = index.clips()[hit.window.clip];
+    const double begin = clip.begin + static_cast<double>(hit.window.frame) / format.rate;
+    found.results.push_back({clip_name(clip.path), clip.path, captions_of(captions, clip.path), begin,
+                             begin + static_cast<double>(format.frames) / format.rate, hit});
+  }
+  return found;
+}
+
+std::string range_of(const Result& result) {
+  return fmt::format("{:.2f}-{:.2f} s", result.begin, result.end);
+}
+
+std::string shift_text(int shift, double rate) { return fmt::format("{:+.2f} s", shift / rate); }
+
+void print_results(const Found& found, const SearchArgs& args, const motion::MotionFormat& format) {
+  fmt::print(
+      "\"{}\": {} of {} (seed {}) against {} of {}; the median {} has distance {:.3f}\n\n", args.text,
+      found.hypotheses.size() == 1 ? "1 hypothesis" : fmt::format("{} hypotheses", found.hypotheses.size()),
+      args.model, args.seed, counted(found.windows, "window"), counted(found.clips, "clip"),
+      args.windows ? "window" : "clip", found.median);
+  const bool second = found.hypotheses.size() > 1;
+  const bool captions = std::any_of(found.results.begin(), found.results.end(),
+                                    [](const Result& result) { return !result.captions.empty(); });
+  std::vector<std::string> head{"", "clip", "time", "distance", "nearest, shift"};
+  if (second) head.emplace_back("second, distance, shift");
+  if (captions) head.emplace_back("caption");
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t i = 0; i < found.results.size(); ++i) {
+    const Result& result = found.results[i];
+    const SearchNeighbour& first = result.hit.nearest.front();
+    rows.push_back({fmt::format("{}", i + 1), result.clip, range_of(result),
+                    fmt::format("{:.3f}", first.distance),
+                    fmt::format("#{} {}", first.hypothesis, shift_text(first.shift, format.rate))});
+    if (second) {
+      const SearchNeighbour& next = result.hit.nearest[1];
+      rows.back().push_back(
+          fmt::format("#{} {:.3f} {}", next.hypothesis, next.distance, shift_text(next.shift, format.rate)));
+    }
+    if (captions) rows.back().push_back(result.captions.empty() ? std::string() : result.captions.front());
+  }
+  print_table(head, rows, "rllrll" + std::string(captions ? "l" : ""));
+}
+
+nlohmann::ordered_json to_json(const Found& found, const SearchArgs& args,
+                               const motion::MotionFormat& format) {
+  nlohmann::ordered_json json{{"text", args.text},
+                              {"model", args.model},
+                              {"collection", args.collection},
+                              {"hypotheses", found.hypotheses.size()},
+                              {"seed", args.seed},
+                              {"frames", format.frames},
+                              {"rate", format.rate},
+                              {"hop", found.hop},
+                              {"clips", found.clips},
+                              {"left_out", found.left_out},
+                              {"windows", found.windows},
+                              {"ranked", args.windows ? "windows" : "clips"},
+                              {"median_distance", found.median},
+                              {"results", nlohmann::ordered_json::array()}};
+  for (const Result& result : found.results) {
+    nlohmann::ordered_json nearest = nlohmann::ordered_json::array();
+    for (const SearchNeighbour& near : result.hit.nearest)
+      nearest.push_back({{"hypothesis", near.hypothesis},
+                         {"distance", near.distance},
+                         {"shift_frames", near.shift},
+                         {"shift_seconds", near.shift / format.rate}});
+    json["results"].push_back({{"clip", result.clip},
+                               {"file", result.path},
+                               {"captions", result.captions},
+                               {"begin_seconds", result.begin},
+                               {"end_seconds", result.end},
+                               {"distance", result.hit.distance()},
+                               {"nearest", nearest}});
+  }
+  return json;
+}
+
+/// The frames of a hypothesis that lie on those of a window; before its first and after its last it stands.
+motion::Motion aligned(const motion::Motion& hypothesis, int shift) {
+  const int last = static_cast<int>(hypothesis.frames) - 1;
+  const auto frame = [&](int t) {
+    return motion::slice(hypothesis, static_cast<std::size_t>(std::clamp(t - shift, 0, last)), 1);
+  };
+  motion::Motion out = frame(0);
+  for (int t = 1; t <= last; ++t) out = motion::join(std::move(out), frame(t));
+  return out;
+}
+
+/// Each result's window beside its nearest hypotheses, frame by frame as they were compared.
+void show_results(const Found& found, const SearchArgs& args, const motion::MotionFormat& format) {
+  constexpr std::size_t most = 12;
+  constexpr double rate = 30;  // of the page; motion of few frames per second is interpolated
+  const fs::path folder =
+      fs::is_directory(args.collection) ? fs::path(args.collection) : fs::path(args.collection).parent_path();
+  std::vector<view::ViewedMotion> shown;
+  for (std::size_t i = 0; i < std::min(most, found.results.size()); ++i) {
+    const Result& result = found.results[i];
+    const motion::Motion clip =
+        motion::resample(motion::to_motion(motion::read_bvh(folder / result.path)), rate);
+    const std::size_t count = motion::resampled_frames(format.frames, format.rate, rate);
+    const std::size_t first =
+        std::min(static_cast<std::size_t>(std::lround(result.begin * rate)), clip.frames - 1);
+    const std::string caption = result.captions.empty() ? "" : ": " + result.captions.front();
+    shown.push_back({fmt::format("{}. {}, {}{}", i + 1, result.clip, range_of(result), caption),
+                     motion::slice(clip, first, std::min(count, clip.frames - first))});
+    for (const SearchNeighbour& near : result.hit.nearest)
+      shown.push_back(
+          {fmt::format("{}. hypothesis #{}, distance {:.3f}, shift {}", i + 1, near.hypothesis, near.distance,
+                       shift_text(near.shift, format.rate)),
+           motion::resample(aligned(format.to_motion(found.hypotheses[near.hypothesis]), near.shift), rate)});
+  }
+  if (found.results.size() > most) fmt::print("only the first {} are shown below\n", most);
+  show_page(args.html, shown, "\"" + args.text + "\" in " + args.collection,
+            1 + found.results.front().hit.nearest.size());
+}
+
+int search(const SearchArgs& args) {
+  check_text(args.text);
+  check_samples(0, args.hypotheses);
+  const fs::path file = model_file(args.model);
+  require(!ActionGan::describes(io::SafeTensors::read(file)), file.string(),
+          " makes motion of classes; a search needs a model that makes motion for a text (motiongan train "
+          "dvgan)");
+  const Context context;
+  const Dvgan model = Dvgan::load(context, file);
+  const motion::MotionFormat& format = model.format();
+  warn_of_unknown_words(format.vocabulary, args.text);
+  // The index comes from the disk while the device makes the hypotheses.
+  auto opened = std::async(std::launch::async,
+                           [&] { return open_search_collection(args.collection, format, args.index); });
+  GenerateOptions options;
+  options.count = args.hypotheses;
+  options.seed = args.seed;
+  std::vector<std::vector<float>> hypotheses = model.generate_poses(args.text, options);
+  const SearchCollection collection = opened.get();
+  for (const std::string& warning : collection.warnings) fmt::print(stderr, "motiongan: {}\n", warning);
+  if (collection.written)
+    fmt::print(stderr, "index {}: {} read, {} kept, {} removed\n", collection.file.string(),
+               counted(collection.read, "file"), collection.kept, collection.removed);
+  const Found found = find(model, args, collection, std::move(hypotheses));
+  if (args.json != "-") print_results(found, args, format);
+  if (!args.json.empty()) {
+    // A path that is not UTF-8 shall not keep the rest from being told.
+    const std::string text =
+        to_json(found, args, format).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+    if (args.json == "-") {
+      fmt::print("{}", text);
+    } else {
+      make_folder_of(args.json);
+      motion::write_text_atomically(args.json, text);
+      fmt::print("wrote {}\n", args.json);
+    }
+  }
+  if (!args.out.empty()) {
+    make_folder(args.out);
+    const std::vector<fs::path> files = sample_files(args.out, slug(args.text), 0, found.hypotheses.size());
+    for (std::size_t h = 0; h < files.size(); ++h)
+      motion::write_bvh(files[h], format.to_motion(found.hypotheses[h]));
+    fmt::print(args.json == "-" ? stderr : stdout, "wrote the hypotheses: {}\n", named(files));
+  }
+  if (!args.html.empty()) show_results(found, args, format);
+  return 0;
+}
+
+}  // namespace
+
+void add_search(CLI::App& app, Job& job) {
+  CLI::App* verb = app.add_subcommand(
+      "search",
+      "Find the clips of a collection that move as a text says.\n"
+      "The model makes hypotheses for the text; every window of every clip is compared with all of them, at\n"
+      "shifts of up to half a window, and clips are listed by the distance of their nearest window. The\n"
+      "collection's index is kept in COLLECTION/.motiongan-search, or in the file of --index.");
+  const auto args = std::make_shared<SearchArgs>();
+  const auto option = [&](const char* name, auto& member, const char* text) {
+    return verb->add_option(name, member, text);
+  };
+  option("--model", args->model, "model file, or the --save folder of a training")
+      ->required()
+      ->type_name("MODEL");
+  option("--text", args->text, "what to look for")->required()->type_name("TEXT");
+  option("--collection", args->collection, "folder of BVH clips of the model's skeleton, or one file")
+      ->required()
+      ->type_name("DIR");
+  option("--hypotheses", args->hypotheses, "motions to make for the text")
+      ->check(positive())
+      ->capture_default_str();
+  option("--seed", args->seed, "another seed makes other hypotheses")
+      ->check(not_negative())
+      ->capture_default_str();
+  option("--top", args->top, "results to list")->check(positive())->capture_default_str();
+  verb->add_flag("--windows", args->windows, "list windows: a clip may stand there more than once");
+  option("--hop", args->hop, "frames between two windows of a clip, at the model's rate [half a window]")
+      ->check(positive());
+  option("--captions", args->captions, "captions to list beside the clips [captions.tsv in the folder]")
+      ->check(CLI::ExistingFile)
+      ->type_name("FILE");
+  option("--index", args->index, "where the collection's index is kept")->type_name("FILE");
+  option("--json", args->json, "also write the results as JSON; -: to the terminal instead of the table")
+      ->type_name("FILE");
+  option("--html", args->html, "also write a page: each clip beside its nearest hypotheses")
+      ->type_name("FILE");
+  option("--out", args->out, "also write the hypotheses as BVH files here")->type_name("DIR");
+  verb->callback([&job, args] { job = [args] { return search(*args); }; });
+}
+
+}  // namespace motiongan::command

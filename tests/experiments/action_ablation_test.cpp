@@ -1,0 +1,121 @@
+// The seven variants of the second paper's comparison, its tables, and what they say of the paper's claims.
+#include "motiongan/experiments/action_ablation.hpp"
+
+#include <doctest/doctest.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "../support/messages.hpp"
+#include "motiongan/procedural/procedural.hpp"
+
+using namespace motiongan;
+using motiongan::testing::message_of;
+using motiongan::testing::says;
+
+namespace {
+
+const motion::ActionDataset& small_data() {
+  static const motion::ActionDataset data = [] {
+    motion::ActionDatasetOptions options;
+    options.pattern = "{label}_*";
+    options.classes = {"run", "walk"};
+    options.frames = 8;
+    options.rate = 8;
+    return motion::ActionDataset::from_motions(
+        motion::procedural_motions({.clips = 36, .seconds = 6, .rate = 8}), options);
+  }();
+  return data;
+}
+
+AblationResult result(const char* name, double curve, double bones, double seam) {
+  AblationResult out{name, {}, {}, 7};
+  out.measures.angles = {40, 41, 39};
+  out.measures.curve_error = curve;
+  out.measures.curve_error_first = 1;
+  out.measures.curve_error_last = 2;
+  out.measures.bone_error = bones;
+  out.measures.seam_body = seam;
+  out.measures.seam = 0.012;
+  out.measures.speed = 1.5;
+  return out;
+}
+
+std::string text_of(const std::filesystem::path& path) { return motion::read_text(path, "table"); }
+
+}  // namespace
+
+TEST_CASE("seven variants, each the full one but for what its name says") {
+  REQUIRE(ablation_variants().size() == 7);
+  const ActionGanOptions model{.hidden = 12, .noise_dim = 3};
+  AttentionTrainOptions training;
+  training.iterations = 9;
+  training.batch = 5;
+  const auto of = [&](const char* name) {
+    const AblationVariant& v = ablation_variant(name);
+    return std::make_pair(v.model(model), v.training(training));
+  };
+  for (const AblationVariant& v : ablation_variants()) {
+    const auto [m, t] = of(std::string(v.name).c_str());
+    CHECK(m.hidden == 12);
+    CHECK(t.batch == 5);
+    CHECK(t.class_weight == 1);
+    CHECK(m.attention == (v.name != "no_attention" && v.name != "neither" && v.name != "lstm"));
+    if (v.lstm) continue;
+    CHECK((t.skeleton_weight > 0) == (v.name == "full" || v.name == "no_attention" || v.name == "no_blend"));
+    CHECK((t.blend_weight > 0) == (v.name == "full" || v.name == "no_attention" || v.name == "no_skeleton"));
+  }
+  CHECK(of("lstm").first.generator == ActionGenerator::lstm);
+  CHECK(of("lstm").first.noise_dim == 0);
+  const BaselineTrainOptions lstm = AblationVariant::baseline_training(training);
+  CHECK(lstm.batch == 5);
+  CHECK(lstm.iterations == 9);
+  CHECK(says(message_of([] { ablation_variant("half"); }), "full, no_attention, no_blend, no_skeleton"));
+}
+
+TEST_CASE("tables: the truth first, lengths in millimetres where the unit is known") {
+  const ActionEvaluation evaluation(small_data(), {.windows = 4, .frames = 3});
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("motiongan-ablation-" + std::to_string(getpid()) + ".csv");
+  std::vector<AblationResult> results{result("full", 0.5, 3, 0.01), result("lstm", 2, 4, 0.02)};
+  results[1].long_run = results[1].measures;
+  results[1].long_run->broken = 0.25;
+
+  write_angles(path, evaluation, results);
+  const std::string angles = text_of(path);
+  CHECK(angles.starts_with("frame,seconds,truth,full,lstm\n1,0.125,"));
+  CHECK(angles.find(",40,40\n2,0.25,") != std::string::npos);
+  CHECK(angles.ends_with(",39,39\n"));
+
+  write_table(path, evaluation, results, true);
+  const std::string table = text_of(path);
+  CHECK(table.starts_with("variant,iterations,curve_error_deg,"));
+  CHECK(table.find(",seam_mm,") != std::string::npos);
+  CHECK(table.find("\ntruth,,0,0,0,0,0,") != std::string::npos);
+  CHECK(table.find("\nfull,7,0.5,1,2,0,0,3,12,10,0,0,1.5,0,,,,,,\n") != std::string::npos);
+  CHECK(table.find("\nlstm,7,2,1,2,0,0,4,12,20,0,0,1.5,0,4,12,0,1.5,0,0.25\n") != std::string::npos);
+  write_table(path, evaluation, results, false);
+  CHECK(text_of(path).find("\nfull,7,0.5,1,2,0,0,3,0.012,0.01,") != std::string::npos);
+  std::filesystem::remove(path);
+}
+
+TEST_CASE("claims: only of variants that are there, yes and no") {
+  const std::vector<AblationResult> results{result("full", 1, 2, 0.01), result("no_attention", 3, 1, 0),
+                                            result("no_blend", 0.5, 9, 0.03), result("lstm", 1.05, 0, 0)};
+  const std::vector<AblationClaim> claims = judge_claims(results, true);
+  const auto held = [&](const std::string& start) {
+    for (const AblationClaim& c : claims)
+      if (c.claim.starts_with(start)) return static_cast<int>(c.verdict);
+    return -1;
+  };
+  CHECK(held("attention: nearer") == int(Verdict::yes));
+  CHECK(held("the blend loss: nearer") == int(Verdict::no));
+  CHECK(held("the blend loss: smaller steps") == int(Verdict::yes));
+  CHECK(held("nearer to the truth's curve than the LSTM") == int(Verdict::even));
+  CHECK(held("the skeleton loss") == -1);
+  CHECK(held("the LSTM: nearer at first") == int(Verdict::yes));  // 1 to 2 degrees off, 40 to 39
+  for (const AblationClaim& c : claims)
+    if (c.claim.starts_with("the blend loss: smaller")) CHECK(c.evidence == "full 10, no_blend 30 mm");
+  CHECK(judge_claims({}, true).empty());
+}

@@ -1,0 +1,144 @@
+// The attention generator second after second without a graph: the same as with one, whoever stands beside.
+#include <doctest/doctest.h>
+
+#include <motiongan/networks/attention_rollout.hpp>
+
+#include "../support/messages.hpp"
+
+using namespace motiongan;
+using namespace motiongan::testing;
+
+namespace {
+
+const Context& context(Precision precision) {
+  static const Context single({.precision = Precision::f32}), twofold({.precision = Precision::f64});
+  return precision == Precision::f64 ? twofold : single;
+}
+
+constexpr std::size_t classes = 3;
+
+/// A generator whose attention is open.
+AttentionGenerator generator(const Context& c, const AttentionGeneratorOptions& options) {
+  AttentionGenerator made(Initializer(c, 3), options);
+  for (const NamedParameter& p : named_parameters(made))
+    if (p.name == "attention.gamma") p.value->node()->value.write(std::span<const float>({0.7f}));
+  return made;
+}
+
+Tensor prior(const Context& c, std::size_t frames, std::size_t batch, std::size_t dof) {
+  return random_normal(c, {.seed = 5}, frames, batch, dof);
+}
+
+/// One-hot [batch, classes]; sample b is of class (b + first) % classes.
+Tensor one_hot(const Context& c, std::size_t batch, std::size_t first = 0) {
+  std::vector<float> rows(batch * classes, 0);
+  for (std::size_t b = 0; b < batch; ++b) rows[b * classes + (b + first) % classes] = 1;
+  return Tensor::from(c, {batch, classes}, rows);
+}
+
+double largest(const std::vector<double>& values) {
+  double most = 0;
+  for (const double v : values) most = std::max(most, std::abs(v));
+  return most;
+}
+
+double difference(const Tensor& a, const Tensor& b) {
+  REQUIRE(a.shape() == b.shape());
+  std::vector<double> x = a.to_host<double>();
+  const std::vector<double> y = b.to_host<double>();
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] -= y[i];
+  return largest(x) / largest(y);
+}
+
+}  // namespace
+
+TEST_CASE("equal to the generator to rounding, fed back, while classes change") {
+  struct Case {
+    std::size_t frames, batch, dof, hidden, noise;
+    bool attention;
+  };
+  for (const Precision precision : {Precision::f32, Precision::f64})
+    for (const Case& k : {Case{30, 3, 93, 64, 0, true},
+                          {7, 1, 5, 20, 0, true},
+                          {1, 2, 17, 9, 4, true},
+                          {5, 13, 16, 40, 1, false},
+                          {33, 2, 31, 256, 0, true}}) {
+      CAPTURE(k.frames);
+      const Context& c = context(precision);
+      const AttentionGenerator g = generator(c, {.dof = k.dof,
+                                                 .classes = classes,
+                                                 .hidden = k.hidden,
+                                                 .noise_dim = k.noise,
+                                                 .attention = k.attention});
+      AttentionRollout rollout(g);
+      Tensor fast = prior(c, k.frames, k.batch, k.dof), plain = fast;
+      for (std::size_t step : {0u, 1u, 2u}) {
+        const Tensor y = one_hot(c, k.batch, step);
+        Tensor z;
+        if (k.noise > 0)
+          z = random_normal(c, {.seed = step}, 1, k.batch, k.noise).reshape({k.batch, k.noise});
+        const NoGrad values_only;
+        fast = rollout.step(fast, y, z);
+        plain = g(Var::constant(plain), Var::constant(y), z.empty() ? Var() : Var::constant(z)).value();
+        CHECK(difference(fast, plain) < (precision == Precision::f64 ? 1e-12 : 1e-5));
+      }
+    }
+}
+
+TEST_CASE("a sample alone and beside others: the same bits") {
+  const Context& c = context(Precision::f32);
+  constexpr std::size_t frames = 30, dof = 93;
+  const AttentionGenerator g = generator(c, {.dof = dof, .classes = classes, .hidden = 256});
+  AttentionRollout rollout(g);
+  const std::size_t batch = 21;
+  const Tensor all = prior(c, frames, batch, dof);
+  Tensor together = all;
+  for (int step = 0; step < 3; ++step) together = rollout.step(together, one_hot(c, batch));
+  for (const std::size_t sample : {0u, 8u, 20u}) {
+    const auto only = [&](const Tensor& t) { return slice(Var::constant(t), 1, sample, 1).value(); };
+    Tensor alone = only(all);
+    for (int step = 0; step < 3; ++step) alone = rollout.step(alone, one_hot(c, 1, sample));
+    CHECK(alone.to_host() == only(together).to_host());
+  }
+}
+
+TEST_CASE("weights are those of the moment it was made; memory is taken once") {
+  const Context& c = context(Precision::f32);
+  AttentionGenerator g = generator(c, {.dof = 6, .classes = classes, .hidden = 16});
+  AttentionRollout rollout(g);
+  const Tensor x = prior(c, 8, 4, 6), y = one_hot(c, 4);
+  const std::vector<float> before = rollout.step(x, y).to_host();
+  for (int i = 0; i < 3; ++i) rollout.step(x, y);
+  const ContextStatistics warm = c.statistics();
+  Tensor motion = x;
+  for (int i = 0; i < 20; ++i) motion = rollout.step(motion, y);
+  CHECK(c.statistics().allocations <= warm.allocations + 1);  // a result and the prior it was made of
+  CHECK(c.statistics().writes == warm.writes);
+  CHECK(c.statistics().reads == warm.reads);
+  for (const NamedParameter& p : named_parameters(g)) {
+    std::vector<float> values = p.value->value().to_host();
+    for (float& v : values) v *= 1.5f;
+    p.value->node()->value.write(std::span<const float>(values));
+  }
+  CHECK(rollout.step(x, y).to_host() == before);
+  CHECK(AttentionRollout(g).step(x, y).to_host() != before);
+}
+
+TEST_CASE("what does not fit is named") {
+  const Context& c = context(Precision::f32);
+  const AttentionGenerator g = generator(c, {.dof = 6, .classes = classes, .hidden = 16, .noise_dim = 2});
+  AttentionRollout rollout(g);
+  const Tensor x = prior(c, 8, 4, 6), y = one_hot(c, 4);
+  const Tensor z = random_normal(c, {.seed = 1}, 1, 4, 2).reshape({4, 2});
+  const auto message = [&](const Tensor& p, const Tensor& k, const Tensor& n) {
+    return message_of([&] { rollout.step(p, k, n); });
+  };
+  CHECK(message(prior(c, 8, 4, 5), y, z) ==
+        "AttentionRollout: a prior [8, 4, 5], expected [frames, batch, 6]");
+  CHECK(message(x, one_hot(c, 3), z) == "AttentionRollout: classes [3, 3], expected [4, 3]");
+  CHECK(says(message(x, y, {}), "noise [], expected [4, 2]"));
+  const AttentionGenerator quiet = generator(c, {.dof = 6, .classes = classes, .hidden = 16});
+  AttentionRollout other(quiet);
+  CHECK(says(message_of([&] { other.step(x, y, z); }), "the generator takes none"));
+  CHECK(rollout.step(x, y, z).shape() == Shape{8, 4, 6});
+}

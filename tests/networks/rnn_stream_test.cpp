@@ -1,0 +1,140 @@
+// Motions of the RNN generator frame by frame: the same as at once, whatever else is in the stream.
+#include <doctest/doctest.h>
+
+#include <motiongan/networks/rnn_stream.hpp>
+
+#include "../support/messages.hpp"
+
+using namespace motiongan;
+using namespace motiongan::testing;
+
+namespace {
+
+constexpr std::size_t dof = 7, hidden = 20, words = 9;
+
+const Context& context() {
+  static const Context c;
+  return c;
+}
+
+const RnnGenerator& model() {
+  static const RnnGenerator generator(Initializer(context(), 3),
+                                      {.vocabulary = words, .dof = dof, .frames = 12, .hidden = hidden});
+  return generator;
+}
+
+/// Motion [frames, dof] as the generator makes it at once.
+std::vector<float> at_once(const StreamStart& start, std::size_t frames,
+                           const std::vector<float>& prior = {}) {
+  const NoGrad values_only;
+  const Var z = model().noise(context(), {.seed = start.seed, .first_sample = start.sample}, 1, frames);
+  const Var seed =
+      prior.empty() ? Var() : Var::constant(Tensor::from(context(), {prior.size() / dof, 1, dof}, prior));
+  return model()(Sentences(context(), {start.sentence}, words), z, {}, seed).value().to_host();
+}
+
+/// Collects a stream's frames by motion.
+struct Recorder {
+  RnnStream stream{model()};
+  std::map<StreamId, std::vector<float>> motions;
+  void step(std::size_t frames) {
+    const std::span<const float> made = stream.step(frames);
+    for (std::size_t f = 0; f < frames; ++f)
+      for (std::size_t row = 0; row < stream.size(); ++row) {
+        const auto first = made.begin() + static_cast<std::ptrdiff_t>((f * stream.size() + row) * dof);
+        auto& motion = motions[stream.id_of(row)];
+        motion.insert(motion.end(), first, first + dof);
+      }
+  }
+};
+
+const StreamStart a{{1, 2, 3}, 5, 0}, b{{4}, 5, 7}, c{{1, 2, 3}, 0x1234567890ull, 2};
+
+std::vector<float> prior(std::size_t frames) {
+  std::vector<float> values;
+  for (std::size_t i = 0; i < frames * dof; ++i) values.push_back(std::sin(0.1f * static_cast<float>(i)));
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("in steps as at once, bit for bit, beside others that come and go") {
+  Recorder r;
+  const StreamId first = r.stream.add({a})[0];
+  r.step(3);
+  const auto later = r.stream.add({b, c});
+  r.step(1);
+  r.step(20);
+  r.stream.remove(first);
+  r.step(9);
+  CHECK(r.motions[first] == at_once(a, 24));
+  CHECK(r.motions[later[0]] == at_once(b, 30));
+  CHECK(r.motions[later[1]] == at_once(c, 30));
+}
+
+TEST_CASE("a prior is continued as the generator completes it; one prior may serve several") {
+  for (std::size_t n : {1u, 5u}) {
+    CAPTURE(n);
+    const std::vector<float> seed = prior(n);
+    Recorder r;
+    const auto ids = r.stream.add({a, b}, seed, n);
+    r.step(8);
+    for (std::size_t i : {0u, 1u}) {
+      std::vector<float> whole = seed;
+      whole.insert(whole.end(), r.motions[ids[i]].begin(), r.motions[ids[i]].end());
+      CHECK(whole == at_once(i == 0 ? a : b, n + 8, seed));
+    }
+  }
+}
+
+TEST_CASE("another text changes what follows, and nothing of the others") {
+  Recorder r;
+  const auto ids = r.stream.add({a, b});
+  r.step(4);
+  r.stream.set_sentence(ids[0], {6, 7});
+  r.step(6);
+  const std::vector<float> before = at_once(a, 10);
+  const auto end_of_old = static_cast<std::ptrdiff_t>(5 * dof);  // the fifth frame was made ahead
+  CHECK(std::equal(before.begin(), before.begin() + end_of_old, r.motions[ids[0]].begin()));
+  CHECK_FALSE(std::equal(before.begin() + end_of_old, before.end(), r.motions[ids[0]].begin() + end_of_old));
+  CHECK(r.motions[ids[1]] == at_once(b, 10));
+}
+
+TEST_CASE("steps allocate nothing on the device, however many") {
+  RnnStream stream(model());
+  std::vector<StreamStart> many;
+  for (std::uint32_t i = 0; i < 50; ++i) many.push_back({{1, 2}, 1, i});
+  stream.add(many);
+  stream.step(4);
+  const ContextStatistics warm = context().statistics();
+  for (int i = 0; i < 500; ++i) stream.step(i % 4 + 1);
+  CHECK(context().statistics().allocations == warm.allocations);
+  CHECK(context().statistics().bytes_in_use == warm.bytes_in_use);
+  CHECK(context().statistics().reads == warm.reads + 500);
+}
+
+TEST_CASE("a stream that was emptied begins anew") {
+  Recorder r;
+  r.stream.add({a, b, c});
+  r.step(7);
+  r.stream.clear();
+  CHECK(r.stream.size() == 0);
+  CHECK(r.stream.step().empty());
+  const StreamId id = r.stream.add({b})[0];
+  r.step(9);
+  CHECK(r.motions[id] == at_once(b, 9));
+}
+
+TEST_CASE("an empty stream, ids that are gone and priors of another size") {
+  RnnStream stream(model());
+  CHECK(stream.step(3).empty());
+  CHECK(stream.add({}).empty());
+  const StreamId id = stream.add({a})[0];
+  stream.remove(id);
+  CHECK(stream.size() == 0);
+  CHECK(stream.step().empty());
+  CHECK(says(message_of([&] { stream.remove(id); }), "no motion with the id 0"));
+  CHECK(says(message_of([&] { stream.set_sentence(99, {1}); }), "id 99"));
+  CHECK(says(message_of([&] { stream.add({a}, prior(2), 3); }), "a prior of 3 frames has 14 numbers"));
+  CHECK(says(message_of([&] { stream.add({{{}, 1, 0}}); }), "without a word"));
+}
