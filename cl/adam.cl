@@ -1,6 +1,6 @@
-/// One Adam step over a whole parameter group (Kingma & Ba 2015; rounding as PyTorch's torch.optim.Adam):
-/// m and v are the running means; rest1 = 1-beta1 and rest2 = 1-beta2 come from the host's double (in float,
-/// 1 - 0.999f is 1e-5 off); step_size = lr/(1-beta1^t), root_correction = sqrt(1-beta2^t).
+/// One Adam step (Kingma & Ba 2015; rounded as in torch.optim.Adam). m and v are the running means of the
+/// gradient and its square; step_size = lr/(1-beta1^t), root_correction = sqrt(1-beta2^t). rest1 = 1-beta1
+/// and rest2 = 1-beta2 are computed on the host in double: in float, 1 - 0.999f is off by 1e-5.
 kernel void adam(global real* parameter, uint parameter0, global const real* gradient, uint gradient0,
                  global real* mean, uint mean0, global real* square, uint square0, uint n, real beta1,
                  real beta2, real rest1, real rest2, real step_size, real root_correction, real epsilon) {

@@ -1,10 +1,11 @@
-// Self-attention while sampling: what AttentionRollout runs without a graph.
+// Self-attention for sampling: the kernels of AttentionRollout, which records no graph.
 
-/// A layer of self-attention after its first product, sample by sample (Malek-Podjaski & Deligianni, eq.
-/// 1-3): o_j = sum over i of softmax_i(query_i . key_j) value_i, then out_j = x_j + bias + weight o_j and its
-/// ReLU. `all` [frames, batch, 3 * inner] holds query, key and value; x, out and rectified are [frames,
-/// batch, width]; weight is [inner, width]. Every group has frames + inner numbers of `scratch` for itself: a
-/// row of the map, and o_j. Groups of one item: x over samples, y over pieces of `rows` frames.
+/// A self-attention layer after the projections, per sample (Malek-Podjaski & Deligianni, eq. 1-3): o_j = sum
+/// over i of softmax_i(query_i . key_j) value_i, then out_j = x_j + bias + weight o_j and rectified_j =
+/// ReLU(out_j). `all` [frames, batch, 3 * inner] holds query, key and value; x, out and rectified are
+/// [frames, batch, width]; weight is [inner, width]. Each work-group has frames + inner elements of
+/// `scratch`: a row of the attention map and o_j. Work-groups of one item: x over samples, y over blocks of
+/// `rows` frames.
 __attribute__((reqd_work_group_size(1, 1, 1))) kernel void attend_frames(
     global const real* all, uint all0, global real* scratch, uint scratch0, global const real* x, uint x0,
     global const real* weight, uint weight0, global const real* bias, uint bias0, global real* out, uint out0,
@@ -49,8 +50,9 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void attend_frames(
   }
 }
 
-/// What the attention generator's first convolution sees: rows [frames, batch, dof + extra] from a prior
-/// [frames, batch, dof] and, on every frame, classes [batch, classes] and noise [batch, extra - classes].
+/// The input of the attention generator, out [frames, batch, dof + class_count + noise_count]: the prior
+/// [frames, batch, dof] with classes [batch, class_count] and noise [batch, noise_count] appended to every
+/// frame.
 kernel void rows_with_constants(global const real* prior, uint prior0, global const real* classes,
                                 uint classes0, global const real* noise, uint noise0, global real* out,
                                 uint out0, uint rows, uint batch, uint dof, uint class_count,

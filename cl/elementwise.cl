@@ -1,5 +1,5 @@
-// y = f(x) and z = f(x, y) over n numbers; each work-item does one vector. a and b are constants of the
-// function.
+// Elementwise functions of one or two arrays of n elements; one vector per work-item. a and b are constants
+// of the function.
 
 #define UNARY(name, expression)                                                                          \
   kernel void name(global const real* x, uint x0, global real* out, uint out0, uint n, real a, real b) { \
@@ -19,7 +19,7 @@
   }
 
 UNARY(affine, a* v + b)
-UNARY(leaky_relu, v < 0 ? a * v : v)  // a NaN passes; slope a, 0 for ReLU
+UNARY(leaky_relu, v < 0 ? a * v : v)  // NaN is preserved; slope a, 0 for ReLU
 UNARY(tanh_of, tanh(v))
 UNARY(sigmoid_of, 1 / (1 + exp(-v)))
 UNARY(exp_of, exp(v))
@@ -30,7 +30,7 @@ UNARY(clamp_of, clamp(v, (realv)a, (realv)b))
 BINARY(axpby, a* v + b * w)
 BINARY(product, v* w)
 BINARY(quotient, v / w)
-// Derivatives of functions by their own value w: v is the gradient that comes in.
+// Gradients of functions in terms of their value w; v is the incoming gradient.
 BINARY(leaky_relu_grad, w > 0 ? v : a * v)
 BINARY(tanh_grad, v*(1 - w * w))
 BINARY(sigmoid_grad, v* w*(1 - w))
@@ -40,8 +40,7 @@ kernel void fill(global real* out, uint out0, uint n, real a) {
   if (i < n) store_some((realv)(a), out + out0 + i, n - i);
 }
 
-/// out[o, j, i] = relu(big[o, j, i] + small[o, i]): a row added to a block of `count` rows, then ReLU, in one
-/// pass.
+/// out[o, j, i] = relu(big[o, j, i] + small[o, i]) for j < count.
 kernel void add_broadcast_relu(global const real* big, uint big0, global const real* small, uint small0,
                             global real* out, uint out0, uint outer, uint count, uint inner) {
   const uint columns = (inner + VW - 1) / VW, item = get_global_id(0);

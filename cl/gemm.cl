@@ -1,13 +1,14 @@
-// C = epilogue((accumulate ? C : 0) + sum over segments of A * B), row-major, made for CPU devices (correct
-// on all).
+// C = epilogue((accumulate ? C : 0) + sum over segments of A * B), row-major. Written for CPU devices,
+// correct on all.
 //
-// One work-group is one work-item: it takes a range of rows and a few panels of COLUMNS columns. A panel of B
-// is copied (or transposed) into private memory, then tiles of up to 12 x COLUMNS of C are held in registers
-// while p runs. Every element is fma(a, b, sum) over p ascending, segment after segment, starting from what C
-// holds or 0: neither the row, nor the size of its tile, nor the blocking of p changes a bit of the result.
+// Each work-group has one work-item, which computes a range of rows and a few panels of COLUMNS columns. It
+// packs a panel of B (copied or transposed) into private memory and holds tiles of up to 12 x COLUMNS
+// elements of C in registers during the loop over p. Every element is fma(a, b, sum) with p ascending,
+// segment after segment, starting from C or 0: neither the row, nor the tile size, nor the blocking of p
+// changes a bit of the result.
 #include "gemm_tiles.cl"
 
-// sums[2 * DIRECT] += a row of A times DIRECT panels of B stored [p][j], read where they are: for few rows,
+// sums[2 * DIRECT] += a row of A times DIRECT panels of B stored [p][j], without packing: with few rows,
 // packing costs as much as the product.
 static inline void multiply_direct(global const real* a, size_t a_stride, global const real* b,
                                    size_t b_stride, uint count, realv* sums) {
@@ -24,7 +25,7 @@ static inline void multiply_direct(global const real* a, size_t a_stride, global
   sums[4] = s4, sums[5] = s5, sums[6] = s6, sums[7] = s7;
 }
 
-// One of a_row and a_p is 1, and one of b_p and b_column. Groups: x over panels, y over rows, z over the
+// One of a_row and a_p is 1, and one of b_p and b_column. Work-groups: x over panels, y over rows, z over the
 // batch.
 __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm(
     global const real* restrict a, global const real* restrict b, global real* restrict c,
@@ -76,7 +77,7 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm(
           const uint whole = columns / COLUMNS, width = columns % COLUMNS;
           pack_rows(from, b_p, count, whole, panel_size, to);
           if (width > 0) {
-            // Reading on to COLUMNS from a row ends inside B while the rows after it hold that many elements.
+            // Reading COLUMNS elements from a row stays inside B if the rows after it hold enough elements.
             const size_t past = b_p == 0 ? k : (COLUMNS - width + b_p - 1) / b_p;
             pack_narrow_rows(from + whole * COLUMNS, b_p, count, width, k - p > past ? k - p - past : 0,
                              to + whole * panel_size);
@@ -131,7 +132,7 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm(
   }
 }
 
-// The epilogue alone, for results of another engine. Items over n, m and the batch.
+// Only the epilogue, for products of another backend. Work-items: x over m * n, y over the batch.
 kernel void gemm_finish(global real* c, uint c_first, global const real* bias, uint bias_first,
                         global const real* residual, uint residual_first, uint m, uint n, uint c_stride,
                         uint residual_stride, uint batch_stride, uint flags) {
@@ -142,7 +143,7 @@ kernel void gemm_finish(global real* c, uint c_first, global const real* bias, u
   *at = finish_one(*at, flags, bias + bias_first + j, residual + residual_first + i * residual_stride + j);
 }
 
-// out[j][i] = x[i][j]. Items: squares of VW rows and VW columns of x, a row of squares after another.
+// out[j][i] = x[i][j]. Work-items: blocks of VW x VW elements of x, in row-major order.
 kernel void transpose(global const real* x, uint x_first, uint x_row, uint rows, uint columns,
                       global real* out, uint out_first, uint out_row) {
   const uint across = (columns + VW - 1) / VW, item = get_global_id(0);

@@ -1,10 +1,9 @@
-// Products whose B comes again and again, such as a recurrent network's weights: B is brought once into the
-// order in which it is read. The same bits as gemm.cl's.
+// Products with the same B many times, such as the weights of a recurrent network: B is packed once. Results
+// are bit-equal to those of gemm.cl.
 #include "gemm_tiles.cl"
 
-// B in panels of COLUMNS columns, out[panel][p][COLUMNS], for products that come again and again: what
-// gemm.cl does for every product is done once. Columns past n are anything. Items: panels, pieces of
-// BLOCK values of p.
+// Packs B into panels of COLUMNS columns, out[panel][p][COLUMNS]. Columns past n are undefined. Work-groups:
+// x over panels, y over blocks of BLOCK values of p.
 __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_pack(global const real* b, uint b_first,
                                                                      uint b_p, uint b_column, uint n, uint k,
                                                                      global real* out, uint out_first) {
@@ -48,7 +47,7 @@ DEFINE_MULTIPLY_PANEL(4)
 DEFINE_MULTIPLY_PANEL(2)
 DEFINE_MULTIPLY_PANEL(1)
 
-// One row times DIRECT panels: several streams of B at once, for one waits on memory.
+// One row times DIRECT panels: a single stream of B would be bound by memory latency.
 static inline void multiply_panels_1(global const real* a, uint count, global const real* b, size_t panel,
                                      realv* sums) {
   realv s0 = sums[0], s1 = sums[1], s2 = sums[2], s3 = sums[3];
@@ -73,9 +72,9 @@ static inline void rectify(global const real* c, size_t stride, uint rows, uint 
     }
 }
 
-// The product with a packed B: one problem, A not transposed; the panels of a segment stand together at its
-// place in B. The same bits as without packing. With RECTIFY the ReLU of C goes to `rectified` as well, in
-// rows as far apart as C's. Groups: x over panels (panels_per_group each), y over rows.
+// The product with a packed B, for batch 1 and A not transposed; the panels of segment s start at
+// b_segment[s]. Bit-equal to the product without packing. With RECTIFY, ReLU(C) is also written to
+// `rectified`, with C's row stride. Work-groups: x over panels (panels_per_group each), y over rows.
 __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_packed(
     global const real* restrict a, global const real* restrict b, global real* restrict c,
     global const real* restrict bias, global const real* restrict residual, const Numbers g,
@@ -92,7 +91,7 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_packed(
   const uint column_begin = get_group_id(0) * g.panels_per_group * COLUMNS;
   const uint column_end = min(n, column_begin + g.panels_per_group * COLUMNS);
   const size_t a_row = g.a_row, c_row = g.c_row, residual_row = g.residual_row, panel = (size_t)k * COLUMNS;
-  // Rows 4 KB apart share one set of the first cache, which holds eight lines: no more rows at a time then.
+  // Rows a multiple of 4 KB apart map to one set of the 8-way L1 cache: take at most 8 rows at a time.
   const uint most = MOST_ROWS > 8 && a_row * REAL_BYTES % 4096 == 0 ? 8 : MOST_ROWS;
   for (uint j = column_begin; j < column_end; j += COLUMNS) {
     global const real* from = b + j / COLUMNS * panel;
@@ -141,8 +140,9 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_packed(
   }
 }
 
-// The weights [4k, in] of an LSTM layer for gemm_lstm_cell: panel 2u holds, for each p, gates i and f of
-// units u * VW .., panel 2u + 1 gates g and o. Items: panels, pieces of BLOCK values of p.
+// Packs the weights [4k, in] of an LSTM layer for gemm_lstm_cell: for each p, panel 2u holds gates i and f of
+// the VW units from u * VW, panel 2u + 1 gates g and o. Work-groups: x over panels, y over blocks of BLOCK
+// values of p.
 __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_pack_gates(global const real* w, uint w_first,
                                                                            uint in, uint k, global real* out,
                                                                            uint out_first) {
@@ -166,7 +166,7 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_pack_gates(globa
     o##r = fma(value, w3, o##r);           \
   }
 #define GATES_STORE(r) z[4 * r] = i##r, z[4 * r + 1] = f##r, z[4 * r + 2] = g##r, z[4 * r + 3] = o##r;
-// z[R][4] = rows of A times the two panels of VW units.
+// z[R][4] = R rows of A times the two panels of VW units.
 #define DEFINE_MULTIPLY_GATES(R)                                                                    \
   static inline void multiply_gates_##R(global const real* a, size_t row_stride, uint count,        \
                                         global const real* w, size_t panel, realv* z) {             \
@@ -185,9 +185,9 @@ DEFINE_MULTIPLY_GATES(6)
 DEFINE_MULTIPLY_GATES(2)
 DEFINE_MULTIPLY_GATES(1)
 
-// One step of an LSTM layer, product and cell: gates = A [batch, in] W^T + x, PyTorch's order i, f, g, o;
-// then c, h as rollout_cell computes them. x_row is 0 where every row sees the same (a bias). Activated gates
-// are written where `keep` is set. Groups: x over VW units, y over rows.
+// One step of an LSTM layer, product and cell: gates = A [batch, in] W^T + x, in the order i, f, g, o; then c
+// and h as in lstm_cell. x_row is 0 if all rows share x (a bias). Activated gates are written if `keep` is
+// set. Work-groups: x over blocks of VW units, y over rows.
 __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_lstm_cell(
     global const real* a, uint a_first, uint a_row, uint in, global const real* w, uint w_first,
     global const real* x, uint x_first, uint x_row, global const real* c_before, uint c_before_first,

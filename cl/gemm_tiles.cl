@@ -1,5 +1,5 @@
-// What the kernels of gemm.cl and gemm_packed.cl have in common: vectors that lie
-// anywhere, panels of B, tiles of C in registers, and what a product needs to know.
+// Shared by gemm.cl and gemm_packed.cl: unaligned vectors, packing of B, register tiles of C, and the
+// arguments of a product.
 
 #define COLUMNS (2 * VW)
 #ifdef REAL_IS_DOUBLE
@@ -8,7 +8,7 @@
 #define REAL_BYTES 4
 #endif
 
-// Values of p that are packed at once: 96 KB for 16 floats a vector, which stays in the second cache.
+// Values of p packed at once: 96 KB with 16 floats per vector, which fits in the L2 cache.
 #ifdef DEVICE_IS_CPU
 #define BLOCK 768
 #else
@@ -29,8 +29,8 @@
 
 typedef JOIN(REAL, 4) real4;
 
-// Vectors in private memory are of type realv, aligned; those in tensors lie anywhere. PoCL's vstore writes
-// pieces of 16 bytes, so a type of lower alignment stands in for it (and for vload) on the CPU.
+// Vectors in private memory are aligned (realv), those in tensors are not. PoCL's vstore splits into pieces
+// of 16 bytes, so on the CPU a vector type of lower alignment replaces vload and vstore.
 #ifdef DEVICE_IS_CPU
 typedef realv anywhere __attribute__((aligned(REAL_BYTES)));
 typedef real4 anywhere4 __attribute__((aligned(REAL_BYTES)));
@@ -55,7 +55,7 @@ typedef real4 anywhere4 __attribute__((aligned(REAL_BYTES)));
 #define STORE_HALF(i) tile[2 * i] = x##i;
 #define FMA_HALF(i) x##i = fma((realv)(a[i * row_stride]), b0, x##i);
 
-// tile[R][COLUMNS] += A * packed for `count` values of p; the second only for the first VW columns.
+// tile[R][COLUMNS] += A * packed for `count` values of p; the _half version only for the first VW columns.
 #define DEFINE_MULTIPLY(R)                                                                                   \
   static inline void multiply_##R(global const real* a, size_t row_stride, size_t p_stride, uint count,      \
                                   const realv* b, realv* tile) {                                             \
@@ -74,7 +74,7 @@ typedef real4 anywhere4 __attribute__((aligned(REAL_BYTES)));
     ROWS_##R(STORE_HALF)                                                                                     \
   }
 
-// 12 rows take 24 of the 32 registers of a machine with 64-byte vectors, 6 rows 12 of the 16 of smaller ones.
+// 12 rows take 24 of the 32 registers with 64-byte vectors, 6 rows take 12 of the 16 with shorter ones.
 #if VW * REAL_BYTES == 64
 #define MOST_ROWS 12
 DEFINE_MULTIPLY(12)
@@ -87,8 +87,8 @@ DEFINE_MULTIPLY(4)
 DEFINE_MULTIPLY(2)
 DEFINE_MULTIPLY(1)
 
-// packed[panels][count][COLUMNS] from B stored [p][j]: a row of several panels is read in one go, for short
-// pieces of far rows come slowly.
+// packed[panels][count][COLUMNS] from B stored [p][j]. A row is read across all panels at once, because
+// reading short pieces of distant rows is slow.
 static inline void pack_rows(global const real* b, size_t stride, uint count, uint panels,
                              size_t panel_stride, realv* packed) {
   for (uint p = 0; p < count; ++p, b += stride, packed += 2) {
@@ -101,8 +101,8 @@ static inline void pack_rows(global const real* b, size_t stride, uint count, ui
   }
 }
 
-// The same for the last panel when it is narrower. Its first `readable` rows may be read to COLUMNS; what
-// stands past `width` is never used.
+// The same for a last panel of fewer columns. Its first `readable` rows may be read up to COLUMNS; columns
+// past `width` are never used.
 static inline void pack_narrow_rows(global const real* b, size_t stride, uint count, uint width,
                                     uint readable, realv* packed) {
   readable = min(readable, count);
@@ -111,9 +111,9 @@ static inline void pack_narrow_rows(global const real* b, size_t stride, uint co
     for (uint j = 0; j < COLUMNS; ++j) ((real*)packed)[p * COLUMNS + j] = j < width ? b[p * stride + j] : 0;
 }
 
-// packed[count][COLUMNS] from B stored [j][p], columns from `width` on repeat the last one. Four values of p
-// at a time: each vector takes 4 values of VW / 4 rows; taking the even and the odd elements of pairs of them
-// twice brings those of one p together, in the order of the columns.
+// packed[count][COLUMNS] from B stored [j][p]; columns past `width` repeat the last one. Four values of p at
+// a time: each vector loads 4 values of VW / 4 rows, and two rounds of separating the even and odd elements
+// of pairs of vectors collect the values of each p in column order.
 #define AT(j) READ4(b + min((uint)(j), last) * stride)
 #if VW == 16
 #define GATHER(i) (realv)(AT(4 * i), AT(4 * i + 1), AT(4 * i + 2), AT(4 * i + 3))
@@ -143,11 +143,11 @@ static inline void pack_transposed(global const real* b, size_t stride, uint cou
   if (width > VW) pack_transposed_half(b + VW * stride, stride, count, width - VW, packed + 1);
 }
 
-// Panels that one row is multiplied with at a time.
+// Panels multiplied by one row at a time.
 #define DIRECT 4
 
-// A row of a tile is two vectors. When the panel is narrower but holds one, the second vector is the one that
-// ends with the panel: it overlaps the first, and nothing outside is touched.
+// A row of a tile is two vectors. In a narrower panel of at least VW columns, store_tile places the second
+// vector so that it ends with the panel: it overlaps the first, and nothing outside is touched.
 static inline void load_tile(global const real* c, size_t stride, uint rows, uint width, realv* tile) {
   for (uint i = 0; i < rows; ++i, tile += 2, c += stride) {
     if (width == COLUMNS) {
@@ -159,7 +159,7 @@ static inline void load_tile(global const real* c, size_t stride, uint rows, uin
   }
 }
 
-// What follows the sum; a NaN stays one through the ReLU.
+// The epilogue of one element; the ReLU preserves NaN.
 static inline real finish_one(real value, uint flags, global const real* bias, global const real* residual) {
   if (flags & BIAS) value += *bias;
   if (flags & RESIDUAL) value += *residual;
@@ -186,13 +186,13 @@ static inline void store_tile(global real* c, size_t stride, uint rows, uint wid
   }
 }
 
-// What a product needs to know, in one argument: PoCL takes its time over each. The same as GemmNumbers on
-// the host.
+// The arguments of a product as one struct, because PoCL has a cost per argument. Mirrors GemmNumbers on the
+// host.
 typedef struct {
   uint m, n, k, segments, flags;
   uint a_first, b_first, c_first, bias_first, residual_first;
   uint a_row, a_p, b_p, b_column, c_row,
-      residual_row;  // distances: element (i, p) of A is a[i * a_row + p * a_p]
+      residual_row;  // strides: element (i, p) of A is a[i * a_row + p * a_p]
   uint a_batch, b_batch, c_batch;
   uint a_segment[4], b_segment[4];
   uint rows_per_group, panels_per_group, panels_at_once;

@@ -1,8 +1,7 @@
-// One step of a GRU (PyTorch's: gates r, z, n), pointwise part. Gates are [batch, 3k], states [batch, k].
+// Pointwise part of one GRU step (gates r, z, n as in PyTorch). Gates are [batch, 3k], states [batch, k].
 
-/// In: what the input and what the state before do to the gates (`x`, `s`, biases included), h of the step
-/// before. Out: activated r, z, n and, behind them, the state's part of n ([batch, 4k], where `keep`); h of
-/// this step.
+/// In: x = W_i x + b_i, s = W_h h + b_h, and h of the previous step. Out: h of this step and, if `keep`, the
+/// activated r, z, n and the part of s for n ([batch, 4k]).
 kernel void gru_cell(global const real* x, uint x0, global const real* s, uint s0,
                      global const real* h_before, uint h_before0, global real* kept, uint kept0, uint keep,
                      global real* h, uint h0, uint batch, uint k) {
@@ -24,9 +23,9 @@ kernel void gru_cell(global const real* x, uint x0, global const real* s, uint s
   store_some(state, row + 3 * k, left);
 }
 
-/// In: what gru_cell kept, h of the step before, the whole gradient of h of this step (`dh`). Out: gradients
-/// of x and s; in dh what passes to h of the step before beside the gates: their product with the recurrent
-/// weights is added to it.
+/// In: what gru_cell kept, h of the previous step, and the total gradient of h of this step (`dh`). Out:
+/// gradients of x and s; in dh, the direct part of the gradient of the previous h (g * z), to which the
+/// caller adds the product of ds with the recurrent weights.
 kernel void gru_cell_backward(global const real* kept, uint kept0, global const real* h_before,
                               uint h_before0, global real* dh, uint dh0, global real* dx, uint dx0,
                               global real* ds, uint ds0, uint batch, uint k) {

@@ -1,4 +1,5 @@
-// Moving rows and frames about. Motion is [frames, batch, channels]; a row is one frame of one sample.
+// Copying, shifting and gathering rows and frames. Motion is [frames, batch, channels]; a row is one frame of
+// one sample.
 
 /// out[o*out_stride + r] = x[o*x_stride + r] for r < run, o < outer.
 kernel void copy_runs(global const real* x, uint x0, uint x_stride, global real* out, uint out0,
@@ -10,7 +11,7 @@ kernel void copy_runs(global const real* x, uint x0, uint x_stride, global real*
   store_some(load_some(x + x0 + o * x_stride + r, left), out + out0 + o * out_stride + r, left);
 }
 
-/// out[o, r] = x[o, r - before] where that is one of x's `run` numbers, else 0; r < out_run.
+/// out[o, r] = x[o, r - before] if 0 <= r - before < run, else 0; r < out_run.
 kernel void pad_runs(global const real* x, uint x0, global real* out, uint out0, uint outer, uint run,
                      uint out_run, uint before) {
   const uint columns = (out_run + VW - 1) / VW, item = get_global_id(0);
@@ -29,7 +30,7 @@ kernel void pad_runs(global const real* x, uint x0, global real* out, uint out0,
   store_some(v, out + out0 + o * out_run + r, left);
 }
 
-/// out[t, b, :] = x[t + first + sign*offset[b], b, :], or `outside` where that frame does not exist.
+/// out[t, b, :] = x[t + first + sign*offset[b], b, :], or `outside` if there is no such frame.
 kernel void shift_frames(global const real* x, uint x0, global const int* offset, global real* out, uint out0,
                          uint frames_in, uint frames_out, uint batch, uint channels, int first, int sign,
                          real outside) {
@@ -44,8 +45,8 @@ kernel void shift_frames(global const real* x, uint x0, global const int* offset
 }
 
 /// Means of neighbouring frames, odd pairs first: with pairs = frames/2, out[t] = (x[2t-1] + x[2t])/2 for t =
-/// 0..pairs and out[pairs+1+t] = (x[2t] + x[2t+1])/2 for t < pairs; frames outside are zero. A slab is all
-/// rows of one frame.
+/// 0..pairs and out[pairs+1+t] = (x[2t] + x[2t+1])/2 for t < pairs; frames outside are zero. `slab` is the
+/// size of one frame of the batch.
 kernel void pair_means(global const real* x, uint x0, global real* out, uint out0, uint frames, uint slab) {
   const uint columns = (slab + VW - 1) / VW, item = get_global_id(0), pairs = frames / 2;
   const uint t = item / columns, i = item % columns * VW;
@@ -82,8 +83,8 @@ kernel void gather_rows(global const real* x, uint x0, global const int* index, 
   store_some(load_some(x + x0 + (uint)index[r] * channels + c, left), out + out0 + r * channels + c, left);
 }
 
-/// out[v, :] = sum of x[r, :] over the rows r with index[r] = v, in ascending order (so that reruns are
-/// bit-equal).
+/// out[v, :] = sum of x[r, :] over the rows r with index[r] = v, in ascending order, so that reruns are
+/// bit-equal.
 kernel void scatter_add_rows(global const real* x, uint x0, global const int* index, global real* out,
                              uint out0, uint rows, uint out_rows, uint channels) {
   const uint columns = (channels + VW - 1) / VW, item = get_global_id(0);
@@ -96,13 +97,13 @@ kernel void scatter_add_rows(global const real* x, uint x0, global const int* in
   store_some(sum, out + out0 + v * channels + c, left);
 }
 
-/// One window of a clip for every sample: out[t, b, c] = poses[row[b] + t*stride, c], less its value in the
-/// window's first frame where relative[c] is set. Then, where yaw < channels, the channels x and z are turned
-/// back by the yaw of the window's first frame (yaw_scale radians a unit).
+/// One window of frames per sample: out[t, b, c] = poses[row[b] + t*stride, c], minus its value in the
+/// window's first frame if relative[c] is set. If yaw < channels, the channels x and z are then rotated by
+/// minus the yaw of the window's first frame (yaw_scale radians per unit).
 kernel void gather_windows(global const real* poses, uint poses0, global const int* row,
                            global const int* relative, global real* out, uint out0, uint frames, uint batch,
                            uint channels, uint stride, uint x, uint z, uint yaw, real yaw_scale) {
-  const uint r = get_global_id(0);  // one row of the result
+  const uint r = get_global_id(0);  // row of out
   if (r >= frames * batch) return;
   global const real* first = poses + poses0 + (uint)row[r % batch] * channels;
   global const real* now = first + r / batch * stride * channels;
@@ -116,7 +117,7 @@ kernel void gather_windows(global const real* poses, uint poses0, global const i
   }
 }
 
-/// out[r, :] += x[r, :] for `rows` rows of `run` numbers.
+/// out[r, :] += x[r, :] for `rows` rows of `run` elements.
 kernel void add_rows(global const real* x, uint x0, uint x_stride, global real* out, uint out0,
                      uint out_stride, uint rows, uint run) {
   const uint columns = (run + VW - 1) / VW, item = get_global_id(0);

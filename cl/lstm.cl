@@ -1,9 +1,9 @@
-// One step of an LSTM layer (PyTorch's: gates i, f, g, o), pointwise part. Gates are [batch, 4k], cell states
-// [batch, k]; hidden states may stand in longer rows, h_row numbers apart. A sample whose sentence is over
-// (step >= length) keeps its state; length may be absent (all samples are as long).
+// Pointwise part of one LSTM step (gates i, f, g, o as in PyTorch). Gates are [batch, 4k], cell states
+// [batch, k]; hidden states are [batch, k] with row stride h_row. A sample whose sequence has ended (step >=
+// length[b]) keeps its state; a null length means that none ends.
 
-/// In: gates before activation, c of the step before. Out: gates after activation (in place), h and c of this
-/// step.
+/// In: pre-activation gates, c (and with length h) of the previous step. Out: activated gates (in place), h
+/// and c of this step.
 kernel void lstm_cell(global real* gates, uint gates0, global const real* c_before, uint c_before0,
                       global const real* h_before, uint h_before0, global const int* length, uint step,
                       global real* h, uint h0, uint h_row, global real* c, uint c0, uint batch, uint k) {
@@ -28,13 +28,13 @@ kernel void lstm_cell(global real* gates, uint gates0, global const real* c_befo
   store_some(o * tanh(state), h + h0 + b * h_row + j, left);
 }
 
-/// In: activated gates, c of this step and the one before, gradients of h and c of this step from outside
-/// (dh, in rows of dh_row; dc may be absent) and, unless this is the `last` step, from the step after
-/// (dh_carry, dc_carry; dh_carry is absent where dh holds all). Out: gradient of the gates before activation;
-/// dc_carry for the step before; where asked, the whole gradients of h and of c (h_total, c_total). The
-/// product of the gate gradients with the recurrent weights makes dh_carry for the step before; with `length`
-/// it is added to what this kernel leaves there, which passes beside the gates: zero, or all of it for a
-/// sample that is over.
+/// In: activated gates; c of this step and the previous one; gradients of h and c of this step from outside
+/// the layer (dh, with row stride dh_row; dc may be null) and, unless this is the `last` step, from the next
+/// step (dh_carry, dc_carry; dh_carry is null if dh holds the total). Out: gradient of the pre-activation
+/// gates; dc_carry for the previous step; if not null, the total gradients of h and c (h_total, c_total). The
+/// caller computes dh_carry for the previous step as the product of the gate gradients with the recurrent
+/// weights. With `length`, it adds the product to what this kernel leaves in dh_carry: the total gradient of
+/// h for a sample that has ended, else zero.
 kernel void lstm_cell_backward(global const real* gates, uint gates0, global const real* c, uint c0,
                                global const real* c_before, uint c_before0, global const real* dh, uint dh0,
                                uint dh_row, global const real* dc, uint dc0, global const int* length,
@@ -75,15 +75,16 @@ kernel void lstm_cell_backward(global const real* gates, uint gates0, global con
   if (c_total) store_some(gc, c_total + c_total0 + at, left);
 }
 
-// The derivative of lstm_cell_backward over all steps (no sample over), for the second derivative of the
-// layer. It has two sweeps: forwards in time, because lstm_cell_backward runs backwards, and then backwards
-// through the activations that it used. An adjoint is the derivative of the final scalar by that quantity.
+// The derivative of lstm_cell_backward over all steps (without `length`), for the second derivative of the
+// layer. It takes two sweeps: forward in time, because lstm_cell_backward runs backward, then backward
+// through the activations that it used. The adjoint of a quantity is the derivative of the final scalar with
+// respect to it.
 
-/// First sweep. In: adjoint of the gate gradients including what comes from the step before (`u`); what
-/// lstm_cell_backward saw and left (activated gates, c, h_total, c_total); from the step before the adjoint
-/// of c_total and the direct adjoint of c (absent in the first step). Out: adjoints of h_total and c_total,
-/// which are also those of dh and dc; the direct adjoints of the activations (`direct_gates`, may be u) and
-/// of c.
+/// First sweep. In: the adjoint of the gate gradients including the part from the previous step (`u`); inputs
+/// and results of lstm_cell_backward (activated gates, c, h_total, c_total); from the previous step the
+/// adjoint of c_total and the direct adjoint of c (both null in the first step). Out: the adjoints of h_total
+/// and c_total, which are also those of dh and dc; the direct adjoints of the activations (`direct_gates`,
+/// may be u) and of c; and an addition to the direct adjoint of the previous c.
 kernel void lstm_grad_forward(global const real* u, uint u0, global const real* gates, uint gates0,
                                global const real* c, uint c0, global const real* c_before, uint c_before0,
                                global const real* h_total, uint h_total0, global const real* c_total,
@@ -126,9 +127,9 @@ kernel void lstm_grad_forward(global const real* u, uint u0, global const real* 
   store_some(of_s * s_grad, direct + direct0 + at, left);
 }
 
-/// Second sweep. In: direct adjoints of the activations and of c (lstm_grad_forward's); adjoints of h and c
-/// from the step after (h_carry absent in the last step). Out: adjoint of the gates before activation, in
-/// place of the direct ones; c_carry for the step before.
+/// Second sweep. In: the direct adjoints of the activations and of c from lstm_grad_forward; the adjoints of
+/// h and c from the next step (h_carry is null in the last step). Out: the adjoint of the pre-activation
+/// gates, in place of the direct one; c_carry for the previous step.
 kernel void lstm_grad_backward(global const real* gates, uint gates0, global const real* c, uint c0,
                                 global const real* c_before, uint c_before0, global const real* direct,
                                 uint direct0, global const real* h_carry, uint h_carry0, global real* c_carry,

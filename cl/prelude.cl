@@ -1,6 +1,5 @@
-// Put in front of every kernel file. REAL is float or double, VW the device's vector width in REALs (4, 8 or
-// 16; 2 for double on narrow CPUs). Kernels see a tensor as (buffer, index of its first element) and count in
-// 32 bits.
+// Prepended to every kernel file. REAL is float or double, VW the device's vector width in elements (2, 4, 8
+// or 16). Kernels receive a tensor as (buffer, index of its first element) and index with 32 bits.
 #ifdef REAL_IS_DOUBLE
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #define REAL_BITS long
@@ -13,14 +12,14 @@
 
 typedef REAL real;
 typedef JOIN(REAL, VW) realv;
-typedef JOIN(REAL_BITS, VW) maskv;  // what a comparison of two realv gives
-// (PoCL has macros of its own by these names.)
+typedef JOIN(REAL_BITS, VW) maskv;  // the result of comparing two realv
+// PoCL defines macros with these names.
 #undef vload
 #undef vstore
 #define vload JOIN(vload, VW)
 #define vstore JOIN(vstore, VW)
 
-/// Sum over the lanes of a vector, always in the same order.
+/// Sum over the lanes of a vector, in a fixed order.
 inline real lane_sum(realv v) {
 #if VW == 16
   JOIN(REAL, 8) a = v.lo + v.hi;
@@ -37,8 +36,8 @@ inline real lane_sum(realv v) {
 #endif
 }
 
-/// The `left` (< VW) numbers at p in the first lanes, zeros behind. Tails go through the same vector code as
-/// the rest, so that a number does not depend on its place in the array.
+/// Loads `left` (< VW) elements into the first lanes; the others are zero. Tails run through the same vector
+/// code as full vectors, so that an element's value does not depend on its position in the array.
 inline realv load_part(global const real* p, uint left) {
   real lanes[VW];
   for (uint j = 0; j < VW; ++j) lanes[j] = j < left ? p[j] : (real)0;
@@ -51,7 +50,8 @@ inline void store_part(realv v, global real* p, uint left) {
   for (uint j = 0; j < left; ++j) p[j] = lanes[j];
 }
 
-// PoCL's vstoreN writes pieces of 16 bytes; a vector type of lower alignment gives one instruction on a CPU.
+// PoCL's vstoreN splits into pieces of 16 bytes; a vector type of lower alignment compiles to one
+// instruction.
 #ifdef DEVICE_IS_CPU
 #ifdef REAL_IS_DOUBLE
 typedef realv realv_anywhere __attribute__((aligned(8)));
@@ -67,6 +67,7 @@ typedef realv realv_anywhere __attribute__((aligned(4)));
 
 inline realv sigmoid_v(realv v) { return 1 / (1 + exp(-v)); }
 
+/// Loads min(left, VW) elements.
 inline realv load_some(global const real* p, uint left) {
   return left >= VW ? LOAD_VECTOR(p) : load_part(p, left);
 }

@@ -1,6 +1,6 @@
-// Counter-based randomness: Philox 4x32 with 10 rounds (Salmon et al., "Parallel random numbers: as easy as
-// 1, 2, 3", SC 2011). A number depends on (seed, stream, step, sample, position) alone: a sample is the same
-// in any batch.
+// Counter-based random numbers: Philox 4x32-10 (Salmon et al., "Parallel random numbers: as easy as 1, 2, 3",
+// SC 2011). A number depends only on (seed, stream, step, sample, position): a sample is the same in any
+// batch.
 
 #define LANES 16
 typedef uint16 uintv;
@@ -27,9 +27,9 @@ inline void philox(uintv* counter0, uintv* counter1, uintv* counter2, uintv* cou
 /// Uniform in (0, 1): never 0, so that its logarithm is finite.
 inline floatv unit(uintv bits) { return (convert_float16(bits >> 9) + 0.5f) * 0x1p-23f; }
 
-/// 64 standard normal numbers, Box-Muller, of which the first `left` are written: number `block` of a row.
-/// Block q of 16 lanes takes counter (block*16 + lane, frame, sample, stream_step); its four words become
-/// channels block*64 + 16*q + lane.
+/// Block number `block` of a row, 64 standard normal numbers by Box-Muller, of which the first `left` are
+/// written. Lane l uses counter (block*16 + l, frame, sample, stream_step); its four words give the channels
+/// block*64 + 16*q + l, q = 0 .. 3.
 inline void normal_block(global real* p, uint left, uint block, uint frame, uint sample, uint stream_step,
                          uint seed0, uint seed1) {
   const uintv lane = (uintv)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
@@ -57,8 +57,8 @@ inline void normal_block(global real* p, uint left, uint block, uint frame, uint
   }
 }
 
-/// out[t, b, c] ~ N(0, 1); row t is frame first_frame + t, counted from frame_of[b] where that is given. One
-/// work-item makes 64 channels of one row.
+/// out[t, b, c] ~ N(0, 1) for frame first_frame + t, plus frame_of[b] unless that is null. One work-item
+/// generates 64 channels of one row.
 kernel void random_normal(global real* out, uint out0, uint frames, uint batch, uint channels, uint seed0,
                           uint seed1, uint stream, uint step, uint first_sample, int first_frame,
                           global const int* frame_of) {
@@ -70,8 +70,8 @@ kernel void random_normal(global real* out, uint out0, uint frames, uint batch, 
                first_sample + row % batch, stream ^ (step << 8), seed0, seed1);
 }
 
-/// The same where every sample has a seed, a number and a first frame of its own: keys[b] = (seed's low word,
-/// its high word, sample, frame), [batch, 4].
+/// The same at step 0 with one key per sample: keys[b] = (low word of the seed, high word, sample, frame),
+/// [batch, 4].
 kernel void random_normal_each(global real* out, uint out0, uint frames, uint batch, uint channels,
                                uint stream, int first_frame, global const int* keys) {
   const uint blocks = (channels + 63) / 64, item = get_global_id(0);
@@ -83,7 +83,7 @@ kernel void random_normal_each(global real* out, uint out0, uint frames, uint ba
                (uint)key[1]);
 }
 
-/// out[i] uniform in (0, 1) by the first word of counter (0, 0, first_sample + i, stream ^ step<<8).
+/// out[i] uniform in (0, 1), from the first word of counter (0, 0, first_sample + i, stream ^ step<<8).
 kernel void random_uniform(global real* out, uint out0, uint n, uint seed0, uint seed1, uint stream,
                            uint step, uint first_sample) {
   const uint i = get_global_id(0);
@@ -93,12 +93,12 @@ kernel void random_uniform(global real* out, uint out0, uint n, uint seed0, uint
   out[out0 + i] = unit(a).s0;
 }
 
-/// out[i] a whole number in [low, low + count), likewise.
+/// out[i] a uniform integer in [low, low + count), from the same counter.
 kernel void random_integers(global int* out, uint n, int low, uint count, uint seed0, uint seed1, uint stream,
                             uint step, uint first_sample) {
   const uint i = get_global_id(0);
   if (i >= n) return;
   uintv a = 0, b = 0, c = (uintv)(first_sample + i), d = (uintv)(stream ^ (step << 8));
   philox(&a, &b, &c, &d, seed0, seed1);
-  out[i] = low + (int)mul_hi(a.s0, count);  // count << 2^32: the bias of this scaling is below 1e-8
+  out[i] = low + (int)mul_hi(a.s0, count);  // the bias of this scaling is below count / 2^32
 }

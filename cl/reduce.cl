@@ -1,4 +1,4 @@
-// Sums in a fixed order, and their adjoint, broadcasting.
+// Sums over an axis in a fixed order, and broadcasting, their adjoint.
 
 /// out[o, s, i] = scale * sum of x[o, j, i] over j in [s*chunk, (s+1)*chunk), in ascending order.
 kernel void sum_axis(global const real* x, uint x0, global real* out, uint out0, uint outer, uint count,
@@ -17,7 +17,7 @@ kernel void sum_axis(global const real* x, uint x0, global real* out, uint out0,
   store_some(sum * scale, out + out0 + row * inner + i, left);
 }
 
-/// out[r] = scale * sum of x[r, 0 .. count-1].
+/// out[r] = scale * sum of x[r, :].
 kernel void sum_rows(global const real* x, uint x0, global real* out, uint out0, uint rows, uint count,
                      real scale) {
   const uint r = get_global_id(0);
@@ -38,7 +38,7 @@ kernel void broadcast_axis(global const real* x, uint x0, global real* out, uint
   store_some(scale * load_some(x + x0 + row / count * inner + i, left), out + out0 + row * inner + i, left);
 }
 
-/// out[r, j] = scale * x[r]: the expansion whose inner size is 1.
+/// out[r, j] = scale * x[r] for j < count: broadcast_axis with inner = 1.
 kernel void broadcast_rows(global const real* x, uint x0, global real* out, uint out0, uint rows, uint count,
                         real scale) {
   const uint columns = (count + VW - 1) / VW, item = get_global_id(0);

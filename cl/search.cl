@@ -1,8 +1,9 @@
-// Distances of windows of a collection to hypotheses, at all shifts (SPEC 7, generative search). Motion is
-// compared by its spectrum: a window [frames, plain] padded with zeros to a length at which no shift that is
-// asked for wraps around; the products of two spectra are the sums over frames of products at every shift.
+// Distances between windows of a motion collection and generated hypotheses, at all shifts (Lin & Amer,
+// generative search). They are computed from spectra: windows [frames, plain] are zero-padded so that no
+// requested shift wraps around, and products of spectra give the cross-correlation over frames at every
+// shift.
 
-/// squares[r] = sum over the columns of x[r]^2: one work-item a row.
+/// squares[r] = sum over the columns of x[r]^2. Work-items: rows.
 kernel void search_squares(global const real* x, uint x0, global real* squares, uint squares0, uint rows,
                            uint columns) {
   const uint r = get_global_id(0);
@@ -16,15 +17,15 @@ kernel void search_squares(global const real* x, uint x0, global real* squares, 
   squares[squares0 + r] = lane_sum(sum);
 }
 
-/// Spectra of windows: out[f, w, :columns] = sum over t of x[starts[w] + t] cos(f, t), out[f, w, columns:] =
+/// Spectra of windows: out[f, w, :columns] = sum over t of x[starts[w] + t] cos(f, t); out[f, w, columns:] is
 /// the same with -sin. `table` [ceil(frequencies / 4), frames, 8] holds four cosines and four negative sines,
-/// zeros past the last frequency. Work-items: windows times pieces of VW columns.
+/// zero past the last frequency. Work-items: windows times blocks of VW columns.
 kernel void search_spectra(global const real* x, uint x0, global const int* starts, global const real* table,
                            uint table0, global real* out, uint out0, uint windows, uint frames, uint columns,
                            uint frequencies) {
   const uint pieces = (columns + VW - 1) / VW, item = get_global_id(0), w = item / pieces;
   if (w >= windows) return;
-  // The last piece ends with the row and overlaps the one before: the same numbers are written twice.
+  // The last block ends with the row and overlaps the previous one: the same values are written twice.
   const uint j = min(item % pieces * VW, columns - min(columns, (uint)VW)), left = columns - j;
   global const real* from = x + x0 + (size_t)starts[w] * columns + j;
   global const real* turn = table + table0;
@@ -48,13 +49,13 @@ kernel void search_spectra(global const real* x, uint x0, global const int* star
   }
 }
 
-// The track of a window is its dimensions that are counted anew from the first frame that overlaps; of three
-// or more that are `turned` the first two, x and z, are turned back by the third, the yaw, of that frame.
+// The track of a window is the dimensions that are taken relative to the first overlapping frame. If
+// `turned`, the first three are x, z and yaw, and (x, z) is rotated by minus the yaw of that frame.
 
-/// own[w, s, 0] = sum of the squares of the frames of window w that overlap with a hypothesis shifted by s,
-/// the last ones; own[w, s, 1] by -s, the first ones; own[w, s, 2:4] = cosine and sine of the yaw of frame s.
-/// `squares` [rows] are those of the plain part, `track` [rows, dims]. Turning changes no square. Sums over
-/// fewer frames are those over more, less what falls away. Work-items: windows.
+/// own[w, s, 0] = sum of squares over the frames of window w that overlap a hypothesis shifted by s (the last
+/// frames - s); own[w, s, 1] the same for a shift by -s (the first frames - s); own[w, s, 2:4] = cosine and
+/// sine of the yaw of frame s. `squares` [rows] is that of the plain dimensions, `track` is [rows, dims].
+/// Rotation does not change squares. Sums for larger s are updated from those for s - 1. Work-items: windows.
 kernel void search_overlaps(global const real* squares, uint squares0, global const real* track, uint track0,
                             global const int* starts, global real* own, uint own0, uint windows, uint frames,
                             uint reach, uint dims, uint turned, real yaw_scale) {
@@ -84,18 +85,18 @@ kernel void search_overlaps(global const real* squares, uint squares0, global co
         const real gone = place[(s - 1) * dims + d] - origin, last = place[(frames - s) * dims + d] - origin;
         sum -= gone, late -= gone * gone, early -= last * last;
       }
-      const real base = place[s * dims + d] - origin;  // frames are counted from frame s
+      const real base = place[s * dims + d] - origin;  // relative to frame s
       out[s * 4] += late - 2 * base * sum + (frames - s) * base * base;
       out[s * 4 + 1] += early;
     }
   }
 }
 
-// Sum over n frames of the products of a window's track, from its first frame that overlaps on, and the
-// hypotheses' `other` [n, dims, lanes], counted and turned already; `sums` [dims, lanes] are other's over the
-// frames. With (x, z) counted from the frame `origin`, (bx, bz) at the first that overlaps and (h, k) of the
-// hypothesis, the product after turning is cos (x h + z k) + sin (x k - z h), less the same of (bx, bz) and
-// the sums of (h, k).
+// Sum over n frames of the products of a window's track, from its first overlapping frame, and that of the
+// hypotheses, `other` [n, dims, lanes], which is already relative and rotated; `sums` [dims, lanes] is its
+// sum over frames. With (x, z) relative to the frame `origin`, (bx, bz) that of the first overlapping frame
+// and (h, k) the hypothesis', the product after rotation is cos (x h + z k) + sin (x k - z h), minus the same
+// expression with (bx, bz) and the sums of (h, k).
 static inline realv track_products(global const real* track, global const real* origin,
                                    global const real* other, global const real* sums, uint n, uint dims,
                                    uint lanes, uint turned, real cosine, real sine) {
@@ -125,13 +126,13 @@ static inline realv track_products(global const real* track, global const real* 
   return result;
 }
 
-/// For each window and hypothesis the smallest mean square difference over the shifts -reach .. reach, and
-/// the shift; of equals the smallest shift. Shapes: products [windows, frequencies, 2, lanes]; own [windows,
-/// reach + 1, 4] of search_overlaps; track [rows, dims]; turns [reach + 1, frequencies, 2], cosine and sine;
-/// other_squares [reach + 1, 2, lanes], as own; other_track [reach + 1, frames, dims, lanes], from frame s
-/// on; other_sums [reach + 1, 2, dims, lanes], over the frames that overlap at shift s, from frame 0 on, and
-/// -s, from frame s on; nearest and shifts [windows, lanes]. Work-items: windows times pieces of VW
-/// hypotheses.
+/// For each window and hypothesis, the smallest mean squared difference over the shifts -reach .. reach and
+/// its shift (the smallest in magnitude among equals). Shapes: products [windows, frequencies, 2, lanes]; own
+/// [windows, reach + 1, 4] from search_overlaps; track [rows, dims]; turns [reach + 1, frequencies, 2],
+/// cosine and sine; other_squares [reach + 1, 2, lanes], like own; other_track
+/// [reach + 1, frames, dims, lanes], starting at frame s; other_sums [reach + 1, 2, dims, lanes], over the
+/// overlapping frames: for shift s from frame 0, for -s from frame s; nearest and shifts [windows, lanes].
+/// Work-items: windows times blocks of VW hypotheses.
 kernel void search_nearest(global const real* products, uint products0, global const real* own, uint own0,
                            global const real* track, uint track0, global const int* starts,
                            global const real* turns, uint turns0, global const real* other_squares,
@@ -157,7 +158,7 @@ kernel void search_nearest(global const real* products, uint products0, global c
     const real share = 1 / ((real)n * dof);
     for (uint early = 0; early < (s > 0 ? 2u : 1u); ++early) {
       realv product = early ? even + odd : even - odd;
-      const uint from = early ? 0 : s, pair = s * 2 + early;  // the window's first frame that overlaps
+      const uint from = early ? 0 : s, pair = s * 2 + early;  // from: the window's first overlapping frame
       if (dims > 0)
         product +=
             track_products(place + from * dims, place,

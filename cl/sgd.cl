@@ -1,4 +1,4 @@
-// Stochastic gradient descent with the gradient's norm over all parameters limited.
+// Stochastic gradient descent with gradient norm clipping over all parameters.
 
 /// out[s] = sum of squares of x in [s*chunk, (s+1)*chunk), in ascending order.
 kernel void squares_of_chunks(global const real* x, uint x0, global real* out, uint out0, uint n,
@@ -14,8 +14,8 @@ kernel void squares_of_chunks(global const real* x, uint x0, global real* out, u
   out[out0 + s] = lane_sum(sum);
 }
 
-/// parameter -= rate * gradient, the gradient shortened to `longest` where its norm is more; `square` is one
-/// number, the norm's square. 0 for longest: no limit.
+/// parameter -= rate * gradient, with the gradient scaled down to norm `longest` if its norm exceeds that;
+/// `square` [1] is the squared norm. longest = 0: no limit.
 kernel void sgd(global real* parameter, uint parameter0, global const real* gradient, uint gradient0,
                 global const real* square, uint square0, uint n, real rate, real longest) {
   const uint i = (uint)get_global_id(0) * VW;

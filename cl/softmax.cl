@@ -1,4 +1,4 @@
-/// out[r, :] = softmax of x[r, :]: one work-item a row, the row's largest taken off first.
+/// out[r, :] = softmax of x[r, :], one row per work-item; the maximum is subtracted first to avoid overflow.
 kernel void softmax_rows(global const real* x, uint x0, global real* out, uint out0, uint rows, uint count) {
   const uint r = get_global_id(0);
   if (r >= rows) return;
@@ -14,7 +14,7 @@ kernel void softmax_rows(global const real* x, uint x0, global real* out, uint o
   for (uint j = 0; j < count; ++j) q[j] /= sum;
 }
 
-/// out[r, :] = log softmax of x[r, :].
+/// out[r, :] = log softmax of x[r, :], one row per work-item.
 kernel void log_softmax_rows(global const real* x, uint x0, global real* out, uint out0, uint rows,
                              uint count) {
   const uint r = get_global_id(0);

@@ -1,4 +1,6 @@
-# The motiongan command: src/*.cpp.
+# The motiongan command: src/**/*.cpp. Files of one folder are compiled as one: the library is all headers, and
+# would otherwise be compiled once more for every file (2.5 times the time). -DMOTIONGAN_UNITY=OFF for single
+# files, while working on one of them.
 file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/*.cpp")
 find_package(CLI11 QUIET)
 find_package(fmt QUIET)
@@ -11,6 +13,12 @@ elseif(NOT PNG_FOUND)
   part_left_out("the motiongan command and its tests are" libpng-dev)
 elseif(sources)
   own_program(motiongan-command ${sources})
+  set_target_properties(motiongan-command PROPERTIES UNITY_BUILD ${MOTIONGAN_UNITY} UNITY_BUILD_MODE GROUP)
+  foreach(source IN LISTS sources)
+    get_filename_component(folder "${source}" DIRECTORY)
+    get_filename_component(folder "${folder}" NAME)
+    set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${folder}")
+  endforeach()
   set_target_properties(motiongan-command PROPERTIES OUTPUT_NAME motiongan)
   target_include_directories(motiongan-command PRIVATE "${PROJECT_SOURCE_DIR}/src")
   target_link_libraries(motiongan-command PRIVATE CLI11::CLI11 fmt::fmt PNG::PNG)

@@ -1,4 +1,4 @@
-// Shows motions side by side: a page for the browser, without any network, and a picture in memory.
+// Shows motions side by side: an HTML page that works offline, and a picture in memory.
 #include <cstdio>
 #include <motiongan.hpp>
 using namespace motiongan;
@@ -9,10 +9,10 @@ int main() {
     motion::LabelledMotion clip = motion::procedural_motion(i, {.seconds = 3});
     shown.push_back({clip.captions.front(), std::move(clip.motion)});
   }
-  shown[0].seed_frames = 30;  // drawn in grey: frames that were given rather than generated
+  shown[0].seed_frames = 30;  // drawn in grey: given rather than generated frames
   view::write_player("motions.html", shown, {.title = "four motions"});
 
-  // Pixels, three bytes each; a PPM file needs no library to be written.
+  // Pixels of three bytes each; writing a PPM file needs no library.
   const view::Image image = view::pose_strip(shown, {.poses = 8});
   std::FILE* file = std::fopen("poses.ppm", "wb");
   if (file == nullptr) return 1;

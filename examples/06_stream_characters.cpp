@@ -1,5 +1,5 @@
-// A hundred characters, one frame at a time, as a game loop asks for them: they come and go, and do something
-// else when they are told.
+// A hundred characters, one frame at a time, as in a game loop: they are added and removed, and change what
+// they do when given another text.
 #include <chrono>
 #include <cstdio>
 #include <motiongan.hpp>
@@ -13,7 +13,7 @@ int main() {
   Dvgan model(ctx, data.format, {.generator = GeneratorKind::rnn, .hidden = 16});
   train(model, data, {.iterations = 5, .critic_steps = 2, .batch = 8});
 
-  // In ten rows of ten. Each has noise of its own: sample 7 does the same whoever is beside it.
+  // In ten rows of ten. Each has its own noise: sample 7 moves the same whichever characters are around it.
   MotionStream stream(model);
   std::vector<CharacterOptions> crowd;
   for (std::uint32_t i = 0; i < 100; ++i)
@@ -25,16 +25,16 @@ int main() {
   const auto begin = std::chrono::steady_clock::now();
   for (std::uint32_t frame = 0; frame < 80; ++frame) {  // ten seconds
     if (frame == 20) stream.set_text(ids[0], "jump");
-    if (frame % 10 == 9) {  // one goes, another comes
+    if (frame % 10 == 9) {  // one is removed, another added
       stream.remove(ids.back());
       ids.back() = stream.add({.text = "run in a circle", .sample = 100 + frame});
     }
     stream.step();
     const motion::Motion first = stream.motion(ids[0]);  // one frame, placed in the world
     if (frame % 20 == 0)
-      std::printf("frame %2u: %zu characters, the first at %6.1f %6.1f\n", frame, stream.size(),
+      std::printf("frame %2u: %zu characters, the first one at %6.1f %6.1f\n", frame, stream.size(),
                   first.position(0, 0)[0], first.position(0, 0)[2]);
   }
   const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
-  std::printf("%.0f frames of 100 characters a second\n", 80 / passed.count());
+  std::printf("%.0f frames of 100 characters per second\n", 80 / passed.count());
 }

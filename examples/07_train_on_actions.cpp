@@ -1,5 +1,5 @@
-// Trains the attention model on clips with classes, then goes on from a second of a clip by a schedule of
-// classes. With your own clips: ActionDataset::from_folder("clips", {.labels = "labels.tsv"}).
+// Trains the attention model on labelled clips, then continues a second of a clip with a schedule of classes.
+// For your own clips: motion::ActionDataset::from_folder("clips", {.labels = "labels.tsv"}).
 #include <cstdio>
 #include <motiongan.hpp>
 using namespace motiongan;
@@ -10,7 +10,7 @@ int main() {
   const auto data = motion::ActionDataset::from_motions(
       motion::procedural_motions({.clips = 68, .seconds = 4, .rate = 20}),
       {.frames = 10, .rate = 10, .pattern = "{label}_*", .classes = {"walk", "run", "jump"}});
-  std::printf("%zu clips to train on, %zu for testing\n", data.train.size(), data.test.size());
+  std::printf("%zu clips for training, %zu for testing\n", data.train.size(), data.test.size());
 
   ActionGan model(ctx, data.format, {.hidden = 16});
   train(model, data, AttentionTrainOptions{.iterations = 5, .critic_steps = 2, .batch = 8},
@@ -20,13 +20,13 @@ int main() {
          }});
   model.save("actions.safetensors");
 
-  // A second that somebody did, then two and a half seconds of walking and a second of running.
+  // A second of a real clip, then two and a half seconds of walking and one of running.
   const std::vector<ActionPrior> priors{prior_from(clip_of(data, data.test.front()), data.format)};
   const auto clips = generate(model, priors, parse_action_schedule("walk:2.5s,run:1s", data.format));
   const motion::PositionClip& made = clips.front();
-  std::printf("%zu frames, %zu of them given\n", made.frames, data.format.frames);
+  std::printf("%zu frames, the first %zu of them given\n", made.frames, data.format.frames);
 
-  // Positions become rotations for the skeleton, so that it can be written as BVH.
+  // Positions are converted to joint rotations, so that the motion can be written as BVH.
   const motion::Motion turned = motion::motion_from_positions(made);
   motion::write_bvh("walk-run.bvh", turned);
   motion::write_position_csv("walk-run.csv", made);

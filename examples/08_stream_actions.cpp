@@ -1,4 +1,4 @@
-// Characters that move on second after second, come and go, and do something else when they are told.
+// Characters that advance one second at a time, are added and removed, and change their class on request.
 #include <chrono>
 #include <cstdio>
 #include <motiongan.hpp>
@@ -12,7 +12,7 @@ int main() {
   ActionGan model(ctx, data.format, {.hidden = 16, .noise_dim = 4});
   train(model, data, AttentionTrainOptions{.iterations = 5, .critic_steps = 2, .batch = 8});
 
-  // Each goes on from a second of a clip; with noise, sample 7 does the same whoever is beside it.
+  // Each continues a second of a clip; sample 7 has the same noise whichever characters are around it.
   std::vector<ActionPrior> priors;
   for (const motion::ActionClip& clip : data.train)
     priors.push_back(prior_from(clip_of(data, clip), data.format));
@@ -26,16 +26,17 @@ int main() {
   const auto begin = std::chrono::steady_clock::now();
   for (std::uint32_t second = 0; second < 10; ++second) {
     if (second == 3) stream.set_class(ids[0], "jump");
-    if (second % 4 == 3) {  // one goes, another comes
+    if (second % 4 == 3) {  // one is removed, another added
       stream.remove(ids.back());
       ids.back() = stream.add({.prior = &priors[0], .label = 1, .sample = 100 + second});
     }
     stream.step();
     const motion::PositionClip first = stream.clip(ids[0]);  // a second, placed in the world
     if (second % 3 == 0)
-      std::printf("second %2u: %zu characters; the first does '%s' at %6.1f %6.1f\n", second, stream.size(),
-                  stream.class_of(ids[0]).c_str(), first.positions[0][0], first.positions[0][2]);
+      std::printf("second %2u: %zu characters; the first one does '%s' at %6.1f %6.1f\n", second,
+                  stream.size(), stream.class_of(ids[0]).c_str(), first.positions[0][0],
+                  first.positions[0][2]);
   }
   const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
-  std::printf("%.0f seconds of 20 characters a second\n", 10 / passed.count());
+  std::printf("%.0f seconds of motion of 20 characters per second\n", 10 / passed.count());
 }

@@ -1,5 +1,5 @@
-// Measures a generator by a ranker, and finds clips that move as a text says. With your own clips:
-// Dataset::from_bvh("clips", {.captions = "captions.tsv"}).
+// Evaluates a generator with a ranker, and finds clips whose motion matches a text. For your own clips:
+// motion::Dataset::from_bvh("clips", {.captions = "captions.tsv"}).
 #include <cstdio>
 #include <motiongan.hpp>
 using namespace motiongan;
@@ -9,14 +9,14 @@ int main() {
   const auto motions = motion::procedural_motions({.clips = 34, .seconds = 5, .rate = 8});
   const auto data = motion::Dataset::from_motions(motions, {.frames = 8, .rate = 4});
 
-  // A ranker knows which text fits a motion: R@k on the clips that were kept for testing.
+  // A ranker scores how well a text fits a motion: R@k on the clips held out for testing.
   Ranker ranker(ctx, data.format, {.kind = RankerKind::rnn, .hidden = 32});
   train(ranker, data, RankerTrainOptions{.iterations = 60, .batch = 16, .adam = {.learning_rate = 3e-3}});
   const RankerEvaluation known = evaluate_ranker(ranker, data);
-  std::printf("R@1 %.1f%% of %zu descriptions, by chance %.1f%%\n", known.retrieval.recall[0],
+  std::printf("R@1 %.1f%% of %zu descriptions, chance %.1f%%\n", known.retrieval.recall[0],
               known.retrieval.descriptions, random_recall(known.retrieval.descriptions)[0]);
 
-  // A generator beside real motion, by that ranker.
+  // A generator compared with real motion by that ranker.
   Dvgan model(ctx, data.format, {.hidden = 16});
   train(model, data, DvganTrainOptions{.iterations = 20, .critic_steps = 2, .batch = 8});
   const ModelEvaluationOptions options{.samples = 4};

@@ -98,8 +98,6 @@
 #include "motiongan/train/progress.hpp"
 #include "motiongan/train/ranker_trainer.hpp"
 #include "motiongan/train/train.hpp"
-#include "motiongan/train/train_attention.hpp"
-#include "motiongan/train/train_prediction.hpp"
 #include "motiongan/train/wgan_gp.hpp"
 //
 #include "motiongan/sample/action_generate.hpp"

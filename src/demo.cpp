@@ -8,7 +8,8 @@
 #include "motiongan/metrics/statistics.hpp"
 #include "motiongan/train/progress.hpp"
 #include "inspect/plot_log.hpp"
-#include "show.hpp"
+#include "shared/show.hpp"
+#include "shared/signals.hpp"
 #include "train/training.hpp"
 
 namespace motiongan::command {
@@ -44,8 +45,8 @@ save/          the run: model, checkpoint, log.csv
 )"));
 }
 
-TrainArgs demo_options(const DemoArgs& demo) {
-  TrainArgs args;
+DvganArgs demo_options() {
+  DvganArgs args;
   args.procedural = 68;
   args.data.frames = 32;
   args.data.rate = 8;
@@ -53,26 +54,27 @@ TrainArgs demo_options(const DemoArgs& demo) {
   args.training.batch = 32;
   args.training.critic_steps = 5;
   args.training.adam.learning_rate = 5e-4;
-  args.run.max_minutes = demo.minutes;
-  choose_defaults(args, false);
   fill_in_choices(args);
   return args;
 }
 
-RunResult train_for(Dvgan& model, const motion::Dataset& data, TrainArgs& args, const fs::path& save) {
+RunResult train_for(double minutes, Dvgan& model, const motion::Dataset& data, DvganArgs& args,
+                    const fs::path& save) {
   ProgressBar bar;
   bar.start(0);
-  RunOptions run = args.run;
+  RunOptions run;
   run.save_dir = save;
   run.save_every_minutes = 0;
-  run.notes = {{"options", options_as_note(args)}};
+  run.max_minutes = minutes;
+  run.notes = {{"options", note_of(fields_of(args))}};
   run.should_stop = [] { return caught_signal() != 0; };
   const auto start = std::chrono::steady_clock::now();
-  run.report = [&](std::size_t iteration, const DvganLosses& losses) {
+  run.report = [&](std::size_t iteration, std::span<const NamedLoss> losses) {
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
-    const double left = std::max(0.0, std::round(60 * run.max_minutes - passed.count()));
-    bar.update(iteration,
-               {{"wasserstein", losses.wasserstein}, {"penalty", losses.penalty}, {"seconds left", left}});
+    const double left = std::max(0.0, std::round(60 * minutes - passed.count()));
+    bar.update(iteration, {{"wasserstein", loss_of(losses, "wasserstein")},
+                           {"penalty", loss_of(losses, "penalty")},
+                           {"seconds left", left}});
   };
   catch_signals();
   const RunResult result = train(model, data, args.training, run);
@@ -169,13 +171,13 @@ int run_demo(const DemoArgs& demo) {
   const Context context;  // first of all: without a device nothing is touched
   renew(out);
   fmt::print("1. data\n");
-  TrainArgs args = demo_options(demo);
+  DvganArgs args = demo_options();
   const motion::Dataset data = load_data(args);
   print_data(data, args);
   fmt::print("\n2. training for {} (Ctrl-C: stop earlier and go on)\n", duration(60 * demo.minutes));
   Dvgan model(context, data.format, args.model);
   print_model(model);
-  const RunResult result = train_for(model, data, args, out / "save");
+  const RunResult result = train_for(demo.minutes, model, data, args, out / "save");
 
   fmt::print("\n3. new motion after {}\n", counted(result.iterations, "iteration"));
   write_motions(model, data, out);
@@ -196,9 +198,7 @@ int run_demo(const DemoArgs& demo) {
   return 0;
 }
 
-}  // namespace
-
-void add_demo(CLI::App& app, Job& job) {
+const Verb demo_verb{"demo", [](CLI::App& app, Job& job) {
   CLI::App* verb = app.add_subcommand(
       "demo", "Train a small model on built-in motion, then show what it learnt: BVH, a page, pictures");
   const auto args = std::make_shared<DemoArgs>();
@@ -209,6 +209,8 @@ void add_demo(CLI::App& app, Job& job) {
       ->capture_default_str()
       ->type_name("DIR");
   verb->callback([&job, args] { job = [args] { return run_demo(*args); }; });
-}
+}};
+
+}  // namespace
 
 }  // namespace motiongan::command

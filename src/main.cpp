@@ -1,10 +1,12 @@
 // The motiongan command: one verb after another, each in a file of its own.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <map>
 #include <new>
 
-#include "command.hpp"
+#include "shared/command.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -40,23 +42,18 @@ int run(int argc, char** argv) {
          "devices`)")
       ->type_name("WISH");
   Job job;
-  add_devices(app, job);
-  CLI::App* train = app.add_subcommand("train", "Train a model on motion clips with captions or classes");
-  train->require_subcommand(1);
-  add_train_dvgan(*train, job);
-  add_train_attention(*train, job);
-  add_train_ranker(*train, job);
-  add_generate(app, job);
-  add_complete(app, job);
-  add_augment(app, job);
-  add_search(app, job);
-  add_info(app, job);
-  add_view(app, job);
-  add_compare(app, job);
-  add_ablate(app, job);
-  add_evaluate(app, job);
-  add_synth(app, job);
-  add_demo(app, job);
+  std::map<std::string, CLI::App*> groups;
+  for (const auto& [name, description] : {std::pair{"train", "Train a model on motion clips with captions or classes"},
+                                          {"ablate", "Compare a model with itself without each of its parts"},
+                                          {"evaluate", "Measure models and motion as the papers do"}}) {
+    groups[name] = app.add_subcommand(name, description);
+    groups[name]->require_subcommand(1);
+  }
+  std::sort(Verb::all().begin(), Verb::all().end());
+  for (const auto& [name, add] : Verb::all()) {
+    const std::size_t space = name.find(' ');
+    add(space == std::string::npos ? app : *groups.at(name.substr(0, space)), job);
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

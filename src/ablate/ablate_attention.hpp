@@ -1,13 +1,12 @@
 // What the parts of `motiongan ablate attention` share.
 #pragma once
-#include "command.hpp"
+#include "shared/command.hpp"
 #include "motiongan/experiments/action_ablation.hpp"
-#include "motiongan/train/train_attention.hpp"
+#include "motiongan/train/attention_trainer.hpp"
+#include "motiongan/train/baseline_trainer.hpp"
 #include "train/training_budget.hpp"
 
 namespace motiongan::command {
-
-void add_ablate_dvgan(CLI::App& ablate, Job& job);
 
 /// What is trained, and for how long each.
 struct AblationTraining {

@@ -4,7 +4,7 @@
 #include "ablate/ablate_attention.hpp"
 #include "motiongan/view/line_plot.hpp"
 #include "motiongan/view/pose_strip.hpp"
-#include "write_png.hpp"
+#include "shared/write_png.hpp"
 
 namespace motiongan::command {
 namespace {

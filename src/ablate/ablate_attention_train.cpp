@@ -1,40 +1,30 @@
 // motiongan ablate: training the variants, each with the same budget.
 #include "ablate/ablate_attention.hpp"
-#include "signals.hpp"
+#include "shared/signals.hpp"
 
 namespace motiongan::command {
-namespace {
-
-/// As many as the random numbers' counter holds.
-std::size_t most_iterations(const AttentionTrainOptions& o) {
-  return (std::size_t{1} << 24) / (o.critic_steps + 1 + o.generator_steps) - 2;
-}
-
-}  // namespace
-
 bool train_variants(const Context& context, const motion::ActionDataset& data, const fs::path& save,
                     const std::vector<const AblationVariant*>& variants, const AblationTraining& training,
                     const VariantNotes& notes) {
   catch_signals();
   for (const AblationVariant* variant : variants) {
-    const fs::path folder = save / variant->name;
+    const std::string name(variant->name);
+    const fs::path folder = save / name;
     if (has_had(folder, training.budget)) {
-      fmt::print("{}: is trained already\n", variant->name);
+      fmt::print("{}: is trained already\n", name);
       continue;
     }
     make_folder(folder);
     ActionGan model(context, data.format, variant->model(training.model));
     AttentionTrainOptions options = variant->training(training.training);
-    options.iterations =
-        training.budget.iterations > 0 ? training.budget.iterations : most_iterations(training.training);
-    const bool ended = unless_diverged(variant->name, [&] {
-      if (variant->lstm)
-        return train_within(model, data, AblationVariant::baseline_training(options),
-                            BaselineRunOptions{.save_dir = folder, .notes = notes(*variant)}, training.budget,
-                            variant->name);
-      return train_within(model, data, options,
-                          AttentionRunOptions{.save_dir = folder, .notes = notes(*variant)}, training.budget,
-                          variant->name);
+    options.iterations = iterations_of(training.budget, options.steps());
+    const auto write_split = [&](const fs::path& path) { data.write_split(path); };
+    const bool ended = unless_diverged(name, [&] {
+      const auto trainer = variant->lstm ? std::unique_ptr<Trainer>(new BaselineTrainer(
+                                               model, data, AblationVariant::baseline_training(options)))
+                                         : std::unique_ptr<Trainer>(new AttentionTrainer(model, data, options));
+      return train_within(*trainer, write_split, {.save_dir = folder, .notes = notes(*variant)},
+                          training.budget, name);
     });
     if (!ended) return false;
   }

@@ -2,16 +2,17 @@
 // ranker.
 #include "ablate/ablate_dvgan.hpp"
 
-#include "ablate/ablate_attention.hpp"
 #include "train/ranking.hpp"
 #include "train/run_start.hpp"
 #include "train/training.hpp"
+#include "shared/signals.hpp"
 #include "train/training_budget.hpp"
 
 namespace motiongan::command {
 namespace {
 
-struct AblateDvganArgs : TrainArgs {
+struct AblateDvganArgs : DvganArgs {
+  std::string save;
   TrainingBudget budget{.minutes = 0, .iterations = 300};
   std::vector<std::string> variants;
   std::size_t seeds = 3;
@@ -39,13 +40,10 @@ std::vector<DvganVariant> asked_variants(const std::vector<std::string>& names) 
 
 /// The options of one training, by the names that `train dvgan` gives them, so that generate, info and
 /// --resume understand its folder as any other run's.
-TrainArgs training_of(const TrainArgs& all, const DvganVariant& variant, std::uint64_t seed) {
-  TrainArgs args = all;
-  args.generator = variant.generator == GeneratorKind::cnn ? "cnn" : "rnn";
-  args.critic = variant.critic == CriticKind::cnn ? "cnn" : "rnn";
-  if (variant.critic == CriticKind::cnn) args.validation = variant.validation_name();
-  args.final_cut = variant.cut;
-  args.training.input_shift = variant.shift;
+DvganArgs training_of(const DvganArgs& all, const DvganVariant& variant, std::uint64_t seed) {
+  DvganArgs args = all;
+  args.model = variant.model(args.model);
+  args.training = variant.training(args.training);
   args.training.seed = seed;
   fill_in_choices(args);
   return args;
@@ -58,10 +56,14 @@ void take_options_of(AblateDvganArgs& args, const CLI::App& verb, const std::vec
     for (const std::uint64_t seed : seeds) {
       const fs::path checkpoint = RunFiles{folder_of(args.save, variant, seed)}.checkpoint();
       if (!fs::exists(checkpoint)) continue;
-      const RunRecord record = read_run_record(checkpoint);
-      const auto note = record.notes.find("options");
-      if (note == record.notes.end()) continue;
-      take_from_note(args, verb, note->second, checkpoint);
+      const std::string note = options_note(checkpoint);
+      if (note.empty()) continue;
+      const std::size_t iterations = args.training.iterations;
+      const std::uint64_t first_seed = args.training.seed;
+      DvganArgs& kept = args;
+      take_note(fields_of(kept), verb, note, checkpoint, options_of_captioned_clips);
+      args.training.iterations = iterations;
+      args.training.seed = first_seed;
       return;
     }
 }
@@ -79,15 +81,14 @@ bool train_variants(const Context& context, const motion::Dataset& data, const A
         continue;
       }
       make_folder(folder);
-      TrainArgs args = training_of(all, variant, seed);
-      args.training.iterations = all.budget.iterations > 0
-                                     ? all.budget.iterations
-                                     : (std::size_t{1} << 24) / (args.training.critic_steps + 1) - 2;
+      DvganArgs args = training_of(all, variant, seed);
+      args.training.iterations = iterations_of(all.budget, args.training.steps());
       Dvgan model(context, data.format, args.model);
       const bool ended = unless_diverged(name, [&] {
-        return train_within(model, data, args.training,
-                            RunOptions{.save_dir = folder, .notes = {{"options", options_as_note(args)}}},
-                            all.budget, name);
+        DvganTrainer trainer(model, data, args.training);
+        return train_within(trainer, [&](const fs::path& path) { data.write_split(path); },
+                            {.save_dir = folder, .notes = {{"options", note_of(fields_of(args))}}}, all.budget,
+                            name);
       });
       if (!ended) return false;
     }
@@ -101,7 +102,7 @@ std::optional<Ranker> get_ranker(const Context& context, const motion::Dataset& 
   RankerArgs& ranking = args.ranking;
   const CaptionedDataArgs& same_data = args;
   static_cast<CaptionedDataArgs&>(ranking) = same_data;
-  fill_in(ranking);
+  fill_in_choices(ranking);
   const fs::path folder = fs::path(args.save) / "ranker";
   const TrainingBudget budget{.minutes = 0,
                               .iterations = ranking.training.iterations,
@@ -112,16 +113,16 @@ std::optional<Ranker> get_ranker(const Context& context, const motion::Dataset& 
           " holds no ranker to measure with; give --ranker, or leave out --evaluate-only");
   make_folder(folder);
   std::optional<Ranker> ranker(std::in_place, context, data.format, ranking.model);
-  const RunNotes notes{{"options", note_of([&](const auto& f) { each_kept(ranking, f); })}};
-  if (!train_within(*ranker, data, ranking.training, RankerRunOptions{.save_dir = folder, .notes = notes},
-                    budget, "ranker"))
+  RankerTrainer trainer(*ranker, data, ranking.training);
+  if (!train_within(trainer, [&](const fs::path& path) { data.write_split(path); },
+                    {.save_dir = folder, .notes = {{"options", note_of(fields_of(ranking))}}}, budget,
+                    "ranker"))
     return std::nullopt;
   return Ranker::load(context, ranker_file(folder));
 }
 
 int run_ablation(AblateDvganArgs args, const CLI::App& verb) {
-  require(!(verb.count("FOLDER") && verb.count("--procedural")),
-          "give a folder of clips or --procedural, not both");
+  require_one_source(verb);
   settle_budget(verb, args.budget);
   const std::vector<DvganVariant> variants = asked_variants(args.variants);
   std::vector<std::uint64_t> seeds;
@@ -130,7 +131,7 @@ int run_ablation(AblateDvganArgs args, const CLI::App& verb) {
   require(!args.folder.empty() || args.procedural > 0,
           "there is nothing to compare on: give a folder of BVH clips, or --procedural");
   // One form of the data for all of them.
-  fill_in_data(args, "heading");
+  fill_in_data(args, motion::RootRotation::heading);
   for (const DvganVariant& variant : variants) training_of(args, variant, seeds.front());  // refuses early
 
   const Context context;
@@ -140,8 +141,7 @@ int run_ablation(AblateDvganArgs args, const CLI::App& verb) {
   print_fact("device", describe(context.device()));
   print_fact("variants", fmt::format("{}, {} each", variants.size(), counted(seeds.size(), "seed")));
   if (!args.evaluate_only) {
-    print_fact("saved to", fmt::format("{}, every {} and at the end of each training", args.save,
-                                       duration(60 * args.budget.save_every_minutes)));
+    print_saved_to(args.save, args.budget.save_every_minutes);
     catch_signals();
   }
   const std::optional<Ranker> ranker = get_ranker(context, data, args);
@@ -151,9 +151,7 @@ int run_ablation(AblateDvganArgs args, const CLI::App& verb) {
   return 0;
 }
 
-}  // namespace
-
-void add_ablate_dvgan(CLI::App& ablate, Job& job) {
+const Verb ablate_dvgan_verb{"ablate dvgan", [](CLI::App& ablate, Job& job) {
   CLI::App* verb = ablate.add_subcommand(
       "dvgan",
       "Train generators and critics, with and without dense validation, input shift and final cut, each as "
@@ -179,14 +177,24 @@ void add_ablate_dvgan(CLI::App& ablate, Job& job) {
       ->capture_default_str();
   verb->add_flag("--evaluate-only", a.evaluate_only, "train nothing; take the models that are there");
   add_budget_options(*verb, a.budget, "for each training", "Training");
-  add_shared_dvgan_options(*verb, a);
+  add_options(*verb, fields_of(a.model), "Model", {.only = {"hidden", "taps"}});
+  add_options(*verb, fields_of(a.training), "Training",
+              {.without = {"iterations", "seed", "critic", "validation", "input_shift", "completion_share"}});
   const auto option = [&](const char* name, auto& member, const char* text) {
     return verb->add_option(name, member, text)->capture_default_str()->group("Evaluation");
   };
   verb->add_option("--ranker", a.ranker, "folder of a run of `train ranker` [one is trained in --save]")
       ->type_name("DIR")
       ->group("Evaluation");
-  option("--ranker-kind", a.ranking.kind, "of the one that is trained")->check(CLI::IsMember({"cnn", "rnn"}));
+  verb->add_option_function<std::string>(
+          "--ranker-kind",
+          [&a](const std::string& name) {
+            a.ranking.model.kind = enum_from<RankerKind>(name, "--ranker-kind");
+          },
+          "of the one that is trained")
+      ->check(CLI::IsMember({"cnn", "rnn"}))
+      ->default_str(name_of(a.ranking.model.kind))
+      ->group("Evaluation");
   option("--ranker-hidden", a.ranking.model.hidden, "its width")->check(positive());
   option("--ranker-iterations", a.ranking.training.iterations, "how long it is trained")->check(positive());
   option("--descriptions", a.evaluation.descriptions, "K: the most popular ones of the test clips, at most")
@@ -195,9 +203,11 @@ void add_ablate_dvgan(CLI::App& ablate, Job& job) {
       ->check(CLI::Range(std::size_t{2}, std::size_t{1'000'000}));
   option("--evaluation-seed", a.evaluation.seed, "of the motions made")->check(not_negative());
   verb->callback([&job, args, verb] {
-    fill_in_procedural(*verb, *args);
+    fill_in_procedural(*verb, args->procedural);
     job = [args, verb] { return run_ablation(*args, *verb); };
   });
-}
+}};
+
+}  // namespace
 
 }  // namespace motiongan::command

@@ -1,6 +1,6 @@
 // What the parts of `motiongan ablate dvgan` share.
 #pragma once
-#include "command.hpp"
+#include "shared/command.hpp"
 #include "motiongan/experiments/dvgan_ablation.hpp"
 
 namespace motiongan::command {

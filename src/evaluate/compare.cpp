@@ -1,5 +1,5 @@
 // motiongan compare: statistics of generated clips beside those of real ones.
-#include "command.hpp"
+#include "shared/command.hpp"
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/data/clip_source.hpp"
 #include "motiongan/data/first_frame.hpp"
@@ -56,9 +56,7 @@ int compare_sets(const CompareArgs& args) {
   return 0;
 }
 
-}  // namespace
-
-void add_compare(CLI::App& app, Job& job) {
+const Verb compare_verb{"compare", [](CLI::App& app, Job& job) {
   CLI::App* verb = app.add_subcommand(
       "compare",
       "Statistics of generated clips beside those of real ones: spread, speed, range, for each joint");
@@ -75,6 +73,8 @@ void add_compare(CLI::App& app, Job& job) {
       ->capture_default_str();
   verb->add_option("--csv", args->csv, "also write the table, a line for each joint")->type_name("FILE");
   verb->callback([&job, args] { job = [args] { return compare_sets(*args); }; });
-}
+}};
+
+}  // namespace
 
 }  // namespace motiongan::command

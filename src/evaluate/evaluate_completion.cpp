@@ -1,8 +1,7 @@
 // motiongan evaluate completion: the first paper's Table 3.
 #include "evaluate/evaluate_completion.hpp"
 
-#include "evaluate/evaluate.hpp"
-#include "signals.hpp"
+#include "shared/signals.hpp"
 
 namespace motiongan::command {
 
@@ -73,32 +72,19 @@ void add_model_options(CLI::App& verb, CompletionArgs& a) {
   option("--minutes", a.minutes,
          "for each model; without a number of iterations they are the whole budget; 0: no limit")
       ->check(not_negative());
-  option("--seed", a.seed, "of first weights, batches and noise")->check(not_negative());
+  FieldList shared, predictors, dvgan;
+  shared.add(a.seed, {.key = "seed", .help = "of the initial weights, batches and noise"});
+  a.list_predictor_fields(predictors);
+  a.list_dvgan_fields(dvgan);
+  add_options(verb, shared, group);
   option("--save-every", a.save_every_minutes, "minutes between two checkpoints; 0: only at the end")
       ->check(not_negative());
   option("--log-every", a.log_every, "iterations between two rows of log.csv")->check(positive());
-  group = "lstm, seq2seq, erd, lstm-3lr";
-  option("--hidden", a.hidden, "width; 0: that of its paper (lstm 256, seq2seq 1024, the others 1000)")
-      ->check(not_negative());
-  option("--batch", a.batch, "windows in a step")->check(positive());
-  group = "dvgan";
-  option("--dvgan-hidden", a.dvgan_hidden, "width")->check(positive());
-  option("--dvgan-batch", a.dvgan_batch, "windows in a step")->check(positive());
-  option("--dvgan-frames", a.dvgan_frames,
-         "frames of a window; 0: 64 for h36m, 32 for cmu, whose running clips hold no more")
-      ->check(not_negative());
-  option("--dvgan-stride", a.dvgan_stride, "uses every so many frames of the protocol; 2: 12.5 per second")
-      ->check(CLI::Range(1, 25));
-  option("--critic", a.critic, "cnn or rnn")->check(CLI::IsMember({"cnn", "rnn"}));
-  option("--critic-steps", a.critic_steps, "in each iteration")->check(positive());
-  option("--completion-share", a.completion_share,
-         "share of the steps whose fakes go on from real frames; the paper has none")
-      ->check(CLI::Range(0.0, 1.0));
+  add_options(verb, predictors, "lstm, seq2seq, erd, lstm-3lr");
+  add_options(verb, dvgan, "dvgan");
 }
 
-}  // namespace
-
-void add_evaluate_completion(CLI::App& evaluate, Job& job) {
+const Verb evaluate_completion_verb{"evaluate completion", [](CLI::App& evaluate, Job& job) {
   CLI::App* verb = evaluate.add_subcommand(
       "completion",
       "How far completions are from what really follows, as the motion-prediction papers measure it: trains "
@@ -131,6 +117,8 @@ void add_evaluate_completion(CLI::App& evaluate, Job& job) {
       ->check(CLI::Range(1, 65535));
   add_model_options(*verb, a);
   verb->callback([&job, args, verb] { job = [args, verb] { return evaluate_completion(*args, *verb); }; });
-}
+}};
+
+}  // namespace
 
 }  // namespace motiongan::command

@@ -1,8 +1,9 @@
 // What the parts of `motiongan evaluate completion` share.
 #pragma once
-#include "command.hpp"
+#include "shared/command.hpp"
 #include "motiongan/experiments/completion_models.hpp"
 #include "motiongan/experiments/completion_table.hpp"
+#include "motiongan/networks/dvgan_critic.hpp"
 #include "train/training_budget.hpp"
 
 namespace motiongan::command {
@@ -18,13 +19,46 @@ struct CompletionArgs {
   std::size_t hidden = 0, batch = 16;  // of the predictors
 
   std::size_t dvgan_hidden = 256, dvgan_batch = 64, dvgan_frames = 0, dvgan_stride = 2, critic_steps = 10;
-  std::string critic = "cnn";
+  CriticKind critic = CriticKind::cnn;
   double completion_share = 0.5;
 
   std::uint64_t seed = 1;
   double save_every_minutes = 5;
   std::size_t log_every = 10;
   std::size_t samples = 10;
+
+  /// What a model's checkpoint keeps.
+  void list_predictor_fields(FieldList& list) {
+    list.add(hidden, {.key = "hidden",
+                      .help = "width; 0: that of its paper (lstm 256, seq2seq 1024, the others 1000)"});
+    list.add(batch, {.key = "batch", .help = "windows in a step", .range = Range::at_least(1)});
+  }
+  void list_dvgan_fields(FieldList& list) {
+    list.add(dvgan_hidden, {.key = "dvgan_hidden", .help = "width", .range = Range::at_least(1)});
+    list.add(dvgan_batch, {.key = "dvgan_batch", .help = "windows in a step", .range = Range::at_least(1)});
+    list.add(dvgan_frames, {.key = "dvgan_frames",
+                            .help = "frames of a window; 0: 64 for h36m, 32 for cmu, whose running clips hold "
+                                    "no more"});
+    list.add(dvgan_stride, {.key = "dvgan_stride",
+                            .help = "uses every n-th frame of the protocol; 2: 12.5 per second",
+                            .range = Range::between(1, 25)});
+    list.add(critic, {.key = "critic", .help = "cnn or rnn"});
+    list.add(critic_steps,
+             {.key = "critic_steps", .help = "critic steps in each iteration", .range = Range::at_least(1)});
+    list.add(completion_share, {.key = "completion_share",
+                                .help = "fraction of the steps whose fakes continue real frames; the paper has "
+                                        "none",
+                                .range = Range::between(0, 1)});
+  }
+  FieldList kept_fields(bool of_dvgan) {
+    FieldList list;
+    list.add(seed, {.key = "seed", .help = "of the initial weights, batches and noise"});
+    if (of_dvgan)
+      list_dvgan_fields(list);
+    else
+      list_predictor_fields(list);
+    return list;
+  }
 };
 
 /// "walking, running".

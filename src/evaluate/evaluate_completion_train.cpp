@@ -1,30 +1,12 @@
 // motiongan evaluate completion: training the models of the table.
 #include "evaluate/evaluate_completion.hpp"
-#include "motiongan/train/train.hpp"
-#include "motiongan/train/train_prediction.hpp"
+#include "motiongan/train/dvgan_trainer.hpp"
+#include "motiongan/train/prediction_trainer.hpp"
 #include "train/run_start.hpp"
-#include "signals.hpp"
+#include "shared/signals.hpp"
 
 namespace motiongan::command {
 namespace {
-
-/// Calls f(name, member) for all options that a model's checkpoint keeps.
-template <class F>
-void each_kept(CompletionArgs& a, bool dvgan, F&& f) {
-  f("--seed", a.seed);
-  if (dvgan) {
-    f("--dvgan-hidden", a.dvgan_hidden);
-    f("--dvgan-batch", a.dvgan_batch);
-    f("--dvgan-frames", a.dvgan_frames);
-    f("--dvgan-stride", a.dvgan_stride);
-    f("--critic", a.critic);
-    f("--critic-steps", a.critic_steps);
-    f("--completion-share", a.completion_share);
-  } else {
-    f("--hidden", a.hidden);
-    f("--batch", a.batch);
-  }
-}
 
 /// What the model is trained on, to tell other files from these.
 std::string data_note(const CompletionData& data) {
@@ -39,17 +21,17 @@ std::string data_note(const CompletionData& data) {
 
 /// Takes what the command line does not give from the run that is there; refuses what differs from it.
 void take_run(CompletionArgs& args, bool dvgan, const CLI::App& verb, const fs::path& checkpoint) {
-  const RunRecord record = read_run_record(checkpoint);
-  const auto found = record.notes.find("options");
-  require(found != record.notes.end(), checkpoint.string(),
+  const std::string note = options_note(checkpoint);
+  require(!note.empty(), checkpoint.string(),
           " is of another command: it does not say its options; choose another --save");
-  const auto each = [&](const auto& f) { each_kept(args, dvgan, f); };
-  take_note(each, verb, found->second, checkpoint, [](const std::string&) { return false; });
-  const auto then = nlohmann::json::parse(found->second), now = nlohmann::json::parse(note_of(each));
+  const FieldList fields = args.kept_fields(dvgan);
+  take_note(fields, verb, note, checkpoint);
+  const nlohmann::json then = io::parse_object(note, checkpoint.string()),
+                       now = nlohmann::json::parse(note_of(fields));
   for (const auto& [name, value] : now.items())
     require(!then.contains(name) || then.at(name) == value, checkpoint.string(), " was trained with ", name,
-            " ", then.value(name, nlohmann::json()).dump(), ", now ", value.dump(),
-            " is asked; give the same, or choose another --save");
+            " ", then.value(name, nlohmann::json()).dump(), ", now it is ", value.dump(),
+            "; give the same, or choose another --save");
 }
 
 TrainingBudget budget_of(const CompletionArgs& args, bool dvgan) {
@@ -60,7 +42,7 @@ TrainingBudget budget_of(const CompletionArgs& args, bool dvgan) {
 }
 
 RunNotes notes_of(CompletionArgs args, bool dvgan, const CompletionData& data) {
-  return {{"options", note_of([&](const auto& f) { each_kept(args, dvgan, f); })}, {"data", data_note(data)}};
+  return {{"options", note_of(args.kept_fields(dvgan))}, {"data", data_note(data)}};
 }
 
 bool train_dvgan(const Context& context, const CompletionData& data, const CompletionArgs& args,
@@ -73,19 +55,18 @@ bool train_dvgan(const Context& context, const CompletionData& data, const Compl
                counted(ids.size(), "file"), args.dvgan_frames, listed(ids));
   }
   DvganTrainOptions options;
-  options.iterations = args.dvgan.iterations > 0 ? args.dvgan.iterations
-                                                 : (std::size_t{1} << 24) / (args.critic_steps + 1) - 2;
   options.critic_steps = args.critic_steps;
+  options.iterations = iterations_of(args.dvgan, options.steps());
   options.batch = args.dvgan_batch;
-  options.critic.critic = args.critic == "rnn" ? CriticKind::rnn : CriticKind::cnn;
+  options.critic.critic = args.critic;
   options.completion_share = args.completion_share;
   options.seed = args.seed;
   if (options.critic.critic == CriticKind::cnn) levels_of(args.dvgan_frames);
   Dvgan model(context, windows.format,
               {.generator = GeneratorKind::rnn, .hidden = args.dvgan_hidden, .seed = args.seed});
-  return train_within(model, windows, options,
-                      RunOptions{.save_dir = folder, .notes = notes_of(args, true, data)},
-                      budget_of(args, true), "dvgan");
+  DvganTrainer trainer(model, windows, options);
+  return train_within(trainer, [&](const fs::path& path) { windows.write_split(path); },
+                      {.save_dir = folder, .notes = notes_of(args, true, data)}, budget_of(args, true), "dvgan");
 }
 
 bool train_predictor(const Context& context, const CompletionData& data, const CompletionArgs& args,
@@ -93,16 +74,19 @@ bool train_predictor(const Context& context, const CompletionData& data, const C
   std::string kind = name;
   std::replace(kind.begin(), kind.end(), '-', '_');
   PredictionTrainOptions options;
-  options.iterations = args.predictors.iterations > 0 ? args.predictors.iterations : (1u << 24) - 1;
+  options.iterations = iterations_of(args.predictors, options.steps());
   options.batch = args.batch;
   options.prefix = CompletionProtocol::prefix;
   options.future = CompletionProtocol::future;
   options.seed = args.seed;
-  PredictionModel model(context, data.dof(), data.classes().size(),
-                        {.predictor = predictor_from(kind), .hidden = args.hidden, .seed = args.seed});
-  return train_within(model, prediction_data(data), options,
-                      PredictionRunOptions{.save_dir = folder, .notes = notes_of(args, false, data)},
-                      budget_of(args, false), name);
+  PredictionModel model(context, {data.dof(), data.classes().size()},
+                        {.predictor = enum_from<Predictor>(kind, "--models"),
+                         .hidden = args.hidden,
+                         .seed = args.seed});
+  const PredictionData sequences = prediction_data(data);
+  PredictionTrainer trainer(model, sequences, options);
+  return train_within(trainer, [&](const fs::path& path) { sequences.write_split(path); },
+                      {.save_dir = folder, .notes = notes_of(args, false, data)}, budget_of(args, false), name);
 }
 
 }  // namespace

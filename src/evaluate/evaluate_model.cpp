@@ -2,11 +2,10 @@
 // (the paper's Table 2), and by the measures of today.
 #include "motiongan/experiments/model_evaluation.hpp"
 
-#include "evaluate/evaluate.hpp"
 #include "evaluate/evaluate_model.hpp"
 #include "motiongan/formats/tab_lines.hpp"
 #include "motiongan/formats/text_file.hpp"
-#include "prompt.hpp"
+#include "shared/prompt.hpp"
 #include "train/ranking.hpp"
 #include "train/run_start.hpp"
 
@@ -68,22 +67,13 @@ int run_evaluation(EvaluateModelArgs args, const CLI::App& verb) {
   const Ranker ranker = Ranker::load(context, ranked_by);
   const motion::MotionFormat& format = model.format();
   ranker.format().require_skeleton(format.skeleton(), "the model " + file.string());
-  if (fs::exists(checkpoint)) {
-    const RunRecord record = read_run_record(checkpoint);
-    if (const auto note = record.notes.find("options"); note != record.notes.end())
-      take_note([&](const auto& f) { each_kept_of_data(args, f); }, verb, note->second, checkpoint,
-                describes_captioned_clips);
-  }
-  require(!args.folder.empty() || args.procedural > 0, file.string(),
-          " does not say what it was trained on; give the folder of clips, and their --captions");
+  take_captioned_data(args, verb, checkpoint, file);
   // Windows are the model's, wherever they are from.
   args.data.frames = format.frames;
   args.data.rate = format.rate;
   args.data.root_position = format.layout.root_position();
-  args.root_rotation = format.layout.root_rotation() == motion::RootRotation::expmap     ? "expmap"
-                       : format.layout.root_rotation() == motion::RootRotation::velocity ? "velocity"
-                                                                                         : "heading";
-  fill_in_data(args, args.root_rotation);
+  args.data.root_rotation = format.layout.root_rotation();
+  fill_in_data(args, format.layout.root_rotation());
   const motion::Dataset data = load_data(args);
   print_data(data, args);
   format.require_skeleton(data.format.skeleton(), "the folder of clips");
@@ -109,9 +99,7 @@ int run_evaluation(EvaluateModelArgs args, const CLI::App& verb) {
   return 0;
 }
 
-}  // namespace
-
-void add_evaluate_model(CLI::App& evaluate, Job& job) {
+const Verb evaluate_model_verb{"evaluate model", [](CLI::App& evaluate, Job& job) {
   CLI::App* verb = evaluate.add_subcommand("model",
                                            "A text-conditioned generator on the descriptions of its test "
                                            "clips: inception score and retrieval (the\n"
@@ -140,9 +128,11 @@ void add_evaluate_model(CLI::App& evaluate, Job& job) {
   add_quality_options(*verb, a.evaluation.feet);
   verb->add_option("--json", a.json, "write all of it to a file")->type_name("FILE");
   verb->callback([&job, args, verb] {
-    fill_in_procedural(*verb, *args);
+    fill_in_procedural(*verb, args->procedural);
     job = [args, verb] { return run_evaluation(*args, *verb); };
   });
-}
+}};
+
+}  // namespace
 
 }  // namespace motiongan::command

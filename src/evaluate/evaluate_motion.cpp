@@ -3,7 +3,6 @@
 
 #include <map>
 
-#include "evaluate/evaluate.hpp"
 #include "motiongan/metrics/npss.hpp"
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/data/clip_source.hpp"
@@ -122,9 +121,7 @@ int evaluate_motion(const EvaluateMotionArgs& args) {
   return 0;
 }
 
-}  // namespace
-
-void add_evaluate_motion(CLI::App& evaluate, Job& job) {
+const Verb evaluate_motion_verb{"evaluate motion", [](CLI::App& evaluate, Job& job) {
   CLI::App* verb = evaluate.add_subcommand("motion",
                                            "Generated clips beside real ones, without any model: feet that "
                                            "slide, jerk, bones that stretch; where\n"
@@ -140,6 +137,8 @@ void add_evaluate_motion(CLI::App& evaluate, Job& job) {
   add_quality_options(*verb, args->feet);
   verb->add_option("--json", args->json, "write all of it to a file")->type_name("FILE");
   verb->callback([&job, args] { job = [args] { return evaluate_motion(*args); }; });
-}
+}};
+
+}  // namespace
 
 }  // namespace motiongan::command

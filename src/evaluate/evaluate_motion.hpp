@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "command.hpp"
+#include "shared/command.hpp"
 #include "motiongan/metrics/motion_quality.hpp"
 
 namespace motiongan::command {

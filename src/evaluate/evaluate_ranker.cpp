@@ -1,5 +1,4 @@
 // motiongan evaluate ranker: how often a ranker finds the description of a clip that it was not trained on.
-#include "evaluate/evaluate.hpp"
 #include "motiongan/experiments/paper_tables.hpp"
 #include "motiongan/experiments/ranker_evaluation.hpp"
 #include "motiongan/formats/text_file.hpp"
@@ -9,7 +8,7 @@
 namespace motiongan::command {
 namespace {
 
-struct EvaluateRankerArgs : RankerArgs {
+struct EvaluateRankerArgs : CaptionedDataArgs {
   std::string ranker, json;
   RankerEvaluationOptions evaluation;
   std::size_t breakdown = 20;
@@ -78,7 +77,7 @@ void write_json(const RankerEvaluation& e, const Ranker& ranker, const fs::path&
                      {"windows", part.samples},
                      {"recall", recalls(part.recall)},
                      {"mean_rank", part.mean_rank}});
-  const nlohmann::json out{{"ranker", ranker.options().kind == RankerKind::cnn ? "cnn" : "rnn"},
+  const nlohmann::json out{{"ranker", name_of(ranker.options().kind)},
                            {"hidden", ranker.options().hidden},
                            {"K", e.retrieval.descriptions},
                            {"clips", e.real.clips},
@@ -100,19 +99,11 @@ int run_evaluation(EvaluateRankerArgs args, const CLI::App& verb) {
   const fs::path file = ranker_file(args.ranker), checkpoint = RunFiles{file.parent_path()}.checkpoint();
   const Context context;
   const Ranker ranker = Ranker::load(context, file);
-  const bool has_data = !args.folder.empty() || verb.count("--procedural") > 0;
-  if (fs::exists(checkpoint)) {
-    const RunRecord record = read_run_record(checkpoint);
-    if (const auto note = record.notes.find("options"); note != record.notes.end())
-      take_note([&](const auto& f) { each_kept_of_data(args, f); }, verb, note->second, checkpoint,
-                describes_captioned_clips);
-  }
-  require(has_data || !args.folder.empty() || args.procedural > 0, file.string(),
-          " does not say what it was trained on; give the folder of clips, and their --captions");
+  take_captioned_data(args, verb, checkpoint, file);
   // Windows are the ranker's, wherever they are from.
   args.data.frames = ranker.format().frames;
   args.data.rate = ranker.format().rate;
-  fill_in_data(args, "heading");
+  fill_in_data(args, motion::RootRotation::heading);
   const motion::Dataset data = load_data(args);
   print_data(data, args);
   print_fact("device", describe(context.device()));
@@ -133,9 +124,7 @@ int run_evaluation(EvaluateRankerArgs args, const CLI::App& verb) {
   return 0;
 }
 
-}  // namespace
-
-void add_evaluate_ranker(CLI::App& evaluate, Job& job) {
+const Verb evaluate_ranker_verb{"evaluate ranker", [](CLI::App& evaluate, Job& job) {
   CLI::App* verb = evaluate.add_subcommand(
       "ranker",
       "How often a ranker finds the description of a clip that it was not trained on (the paper's Table 1).\n"
@@ -155,9 +144,11 @@ void add_evaluate_ranker(CLI::App& evaluate, Job& job) {
       ->check(not_negative());
   verb->add_option("--json", a.json, "write all of it to a file")->type_name("FILE");
   verb->callback([&job, args, verb] {
-    fill_in_procedural(*verb, *args);
+    fill_in_procedural(*verb, args->procedural);
     job = [args, verb] { return run_evaluation(*args, *verb); };
   });
-}
+}};
+
+}  // namespace
 
 }  // namespace motiongan::command

@@ -9,6 +9,7 @@
 #include "motiongan/formats/bvh_reader.hpp"
 #include "motiongan/data/clip_source.hpp"
 #include "motiongan/formats/text_file.hpp"
+#include "motiongan/train/run.hpp"
 
 namespace motiongan::command {
 namespace {

@@ -1,6 +1,6 @@
 // Seconds of motion that an attention model goes on from: of files, or drawn from the clips of its training.
 #pragma once
-#include "action_data.hpp"
+#include "shared/action_data.hpp"
 #include "motiongan/sample/action_prior.hpp"
 
 namespace motiongan::command {

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <map>
 
-#include "action_files.hpp"
+#include "shared/action_files.hpp"
 #include "generate/action_priors.hpp"
 #include "motiongan/data/clip_source.hpp"
-#include "prompt.hpp"
+#include "shared/prompt.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -106,9 +106,7 @@ int augment(AugmentArgs args, const CLI::App& verb) {
   return args.study ? run_study(args.studied, model, data, clips) : 0;
 }
 
-}  // namespace
-
-void add_augment(CLI::App& app, Job& job) {
+const Verb augment_verb{"augment", [](CLI::App& app, Job& job) {
   CLI::App* verb = app.add_subcommand("augment",
                                       "Double a set of clips with classes: one synthetic clip for each "
                                       "training clip, of the same first second,\n"
@@ -130,9 +128,11 @@ void add_augment(CLI::App& app, Job& job) {
   verb->add_flag("--study", args->study, "train and measure classifiers");
   add_study_options(*verb, args->studied);
   verb->callback([&job, args, verb] {
-    default_procedural(*verb, args->data);
+    fill_in_procedural(*verb, args->data.procedural);
     job = [args, verb] { return augment(*args, *verb); };
   });
-}
+}};
+
+}  // namespace
 
 }  // namespace motiongan::command

@@ -1,6 +1,6 @@
 // motiongan augment: what its parts share.
 #pragma once
-#include "action_data.hpp"
+#include "shared/action_data.hpp"
 #include "motiongan/models/action_gan.hpp"
 #include "motiongan/sample/action_generate.hpp"
 

@@ -3,7 +3,7 @@
 #include "motiongan/experiments/augmentation_study.hpp"
 #include "motiongan/formats/text_file.hpp"
 #include "motiongan/train/progress.hpp"
-#include "signals.hpp"
+#include "shared/signals.hpp"
 
 namespace motiongan::command {
 namespace {

@@ -7,9 +7,9 @@
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/data/first_frame.hpp"
 #include "motiongan/motion/motion.hpp"
-#include "prompt.hpp"
-#include "show.hpp"
-#include "signals.hpp"
+#include "shared/prompt.hpp"
+#include "shared/show.hpp"
+#include "shared/signals.hpp"
 #include "generate/streaming.hpp"
 
 namespace motiongan::command {
@@ -191,9 +191,7 @@ int complete(const CompleteArgs& args) {
   return 0;
 }
 
-}  // namespace
-
-void add_complete(CLI::App& app, Job& job) {
+const Verb complete_verb{"complete", [](CLI::App& app, Job& job) {
   CLI::App* verb = app.add_subcommand(
       "complete",
       "Go on from the first frames of a clip, as a text says.\n"
@@ -234,6 +232,8 @@ void add_complete(CLI::App& app, Job& job) {
       ->type_name("FILE");
   option("--png", args->png, "also write a picture of their poses")->type_name("FILE");
   verb->callback([&job, args] { job = [args] { return complete(*args); }; });
-}
+}};
+
+}  // namespace
 
 }  // namespace motiongan::command

@@ -1,6 +1,6 @@
 // How generated motion holds out over time, over all motions of a command.
 #pragma once
-#include "command.hpp"
+#include "shared/command.hpp"
 #include "motiongan/metrics/drift.hpp"
 
 namespace motiongan::command {

@@ -4,9 +4,9 @@
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/motion/motion.hpp"
-#include "prompt.hpp"
-#include "show.hpp"
-#include "signals.hpp"
+#include "shared/prompt.hpp"
+#include "shared/show.hpp"
+#include "shared/signals.hpp"
 #include "generate/streaming.hpp"
 
 namespace motiongan::command {
@@ -132,7 +132,7 @@ int generate(const GenerateArgs& args, const fs::path& file) {
 /// For whichever kind of model it is; refuses options of the other kind.
 int generate_either(const GenerateArgs& args, ActionGenerateArgs actions, const CLI::App& verb) {
   const fs::path file = model_file(args.model);
-  if (!ActionGan::describes(io::SafeTensors::read(file))) {
+  if (!holds_model<ActionGan>(io::SafeTensors::read(file))) {
     const std::string wrong = given_action_options(verb);
     require(wrong.empty(), file.string(), " makes motion for a text: it has no classes, and takes no ", wrong,
             "; use --text \"walk\"");
@@ -148,9 +148,7 @@ int generate_either(const GenerateArgs& args, ActionGenerateArgs actions, const 
   return generate_actions(actions, verb, file);
 }
 
-}  // namespace
-
-void add_generate(CLI::App& app, Job& job) {
+const Verb generate_verb{"generate", [](CLI::App& app, Job& job) {
   CLI::App* verb = app.add_subcommand(
       "generate",
       "Make new motion for a text, or for classes from a second of motion on, and write it as files.\n"
@@ -198,6 +196,8 @@ void add_generate(CLI::App& app, Job& job) {
   verb->callback([&job, args, actions, verb] {
     job = [args, actions, verb] { return generate_either(*args, *actions, *verb); };
   });
-}
+}};
+
+}  // namespace
 
 }  // namespace motiongan::command

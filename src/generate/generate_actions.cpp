@@ -1,18 +1,18 @@
 // motiongan generate, for a model of classes: from a second of motion on, by a schedule.
 #include "generate/generate_actions.hpp"
 
-#include "action_files.hpp"
+#include "shared/action_files.hpp"
 #include "generate/action_priors.hpp"
 #include "motiongan/data/clip_source.hpp"
 #include "motiongan/sample/action_generate.hpp"
 #include "motiongan/view/heat_map.hpp"
-#include "prompt.hpp"
-#include "show.hpp"
+#include "shared/prompt.hpp"
+#include "shared/show.hpp"
 
 namespace motiongan::command {
 namespace {
 
-constexpr std::size_t at_a_time = 64;  // characters
+constexpr std::size_t characters_at_a_time = 64;  // characters
 
 /// How long it goes on, in seconds; 0 where the schedule says so.
 double asked_seconds(const ActionGenerateArgs& args, double rate) {
@@ -28,7 +28,7 @@ std::vector<GivenPrior> find_priors(const ActionGenerateArgs& args, const CLI::A
                                     const fs::path& file, const ActionGan& model, std::size_t label) {
   ActionDataArgs data;
   data.folder = args.data;
-  data.bones = args.bones;
+  data.options.bones = args.bones;
   const motion::PositionFormat& format = model.format();
   if (!args.from.empty()) {
     fill_in_choices(data);
@@ -162,8 +162,8 @@ int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const
     files.push_back(out / fmt::format("{}_{:03}.{}", name, args.first_sample + i, args.format));
   const bool shows = !args.html.empty() || !args.png.empty();
   std::vector<view::ViewedMotion> shown;
-  for (std::size_t first = 0; first < priors.size(); first += at_a_time) {
-    const std::size_t count = std::min(at_a_time, priors.size() - first);
+  for (std::size_t first = 0; first < priors.size(); first += characters_at_a_time) {
+    const std::size_t count = std::min(characters_at_a_time, priors.size() - first);
     std::vector<ActionPrior> some;
     for (std::size_t i = 0; i < count; ++i) some.push_back(priors[first + i].prior);
     const std::vector<motion::PositionClip> clips =

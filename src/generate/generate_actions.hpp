@@ -1,6 +1,6 @@
 // motiongan generate, for a model of classes.
 #pragma once
-#include "action_data.hpp"
+#include "shared/action_data.hpp"
 
 namespace motiongan::command {
 

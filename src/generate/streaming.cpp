@@ -7,7 +7,7 @@
 
 #include "motiongan/formats/bvh_stream.hpp"
 #include "motiongan/train/progress.hpp"
-#include "signals.hpp"
+#include "shared/signals.hpp"
 
 namespace motiongan::command {
 namespace {

@@ -2,10 +2,10 @@
 #pragma once
 #include <optional>
 
-#include "command.hpp"
+#include "shared/command.hpp"
 #include "generate/drift_report.hpp"
 #include "motiongan/sample/motion_stream.hpp"
-#include "show.hpp"
+#include "shared/show.hpp"
 
 namespace motiongan::command {
 

@@ -1,5 +1,5 @@
 // motiongan synth: the built-in procedural motion as files.
-#include "command.hpp"
+#include "shared/command.hpp"
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/procedural/procedural.hpp"
 #include "motiongan/formats/text_file.hpp"
@@ -35,9 +35,7 @@ int synthesise(const SynthArgs& args) {
   return 0;
 }
 
-}  // namespace
-
-void add_synth(CLI::App& app, Job& job) {
+const Verb synth_verb{"synth", [](CLI::App& app, Job& job) {
   CLI::App* verb =
       app.add_subcommand("synth", "Write the built-in procedural motion as BVH files with captions");
   const auto args = std::make_shared<SynthArgs>();
@@ -54,6 +52,8 @@ void add_synth(CLI::App& app, Job& job) {
       ->check(not_negative())
       ->capture_default_str();
   verb->callback([&job, args] { job = [args] { return synthesise(*args); }; });
-}
+}};
+
+}  // namespace
 
 }  // namespace motiongan::command

@@ -2,7 +2,7 @@
 #include <cstdlib>
 #include <optional>
 
-#include "command.hpp"
+#include "shared/command.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -36,11 +36,11 @@ int list_devices() {
   return 0;
 }
 
-}  // namespace
-
-void add_devices(CLI::App& app, Job& job) {
+const Verb devices_verb{"devices", [](CLI::App& app, Job& job) {
   CLI::App* verb = app.add_subcommand("devices", "List the OpenCL devices and mark the one that is taken");
   verb->callback([&job] { job = list_devices; });
-}
+}};
+
+}  // namespace
 
 }  // namespace motiongan::command

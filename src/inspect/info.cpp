@@ -8,7 +8,7 @@
 #include "motiongan/data/pose.hpp"
 #include "motiongan/train/csv_log.hpp"
 #include "inspect/plot_log.hpp"
-#include "write_png.hpp"
+#include "shared/write_png.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -91,9 +91,7 @@ int info(const InfoArgs& args) {
   return 0;
 }
 
-}  // namespace
-
-void add_info(CLI::App& app, Job& job) {
+const Verb info_verb{"info", [](CLI::App& app, Job& job) {
   CLI::App* verb = app.add_subcommand("info",
                                       "Say what a file or a folder holds: a model or checkpoint "
                                       "(.safetensors), the folder of a run, a BVH clip,\n"
@@ -104,6 +102,8 @@ void add_info(CLI::App& app, Job& job) {
       ->type_name("FILE");
   verb->add_option("--png", args->png, "for a log.csv: draw its curves")->type_name("FILE");
   verb->callback([&job, args] { job = [args] { return info(*args); }; });
-}
+}};
+
+}  // namespace
 
 }  // namespace motiongan::command

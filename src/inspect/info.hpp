@@ -1,6 +1,6 @@
 // The parts of `motiongan info`.
 #pragma once
-#include "command.hpp"
+#include "shared/command.hpp"
 
 namespace motiongan::command {
 

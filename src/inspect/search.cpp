@@ -8,8 +8,8 @@
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/data/captions.hpp"
-#include "prompt.hpp"
-#include "show.hpp"
+#include "shared/prompt.hpp"
+#include "shared/show.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -180,7 +180,7 @@ int search(const SearchArgs& args) {
   check_text(args.text);
   check_samples(0, args.hypotheses);
   const fs::path file = model_file(args.model);
-  require(!ActionGan::describes(io::SafeTensors::read(file)), file.string(),
+  require(!holds_model<ActionGan>(io::SafeTensors::read(file)), file.string(),
           " makes motion of classes; a search needs a model that makes motion for a text (motiongan train "
           "dvgan)");
   const Context context;
@@ -224,9 +224,7 @@ int search(const SearchArgs& args) {
   return 0;
 }
 
-}  // namespace
-
-void add_search(CLI::App& app, Job& job) {
+const Verb search_verb{"search", [](CLI::App& app, Job& job) {
   CLI::App* verb = app.add_subcommand(
       "search",
       "Find the clips of a collection that move as a text says.\n"
@@ -264,6 +262,8 @@ void add_search(CLI::App& app, Job& job) {
       ->type_name("FILE");
   option("--out", args->out, "also write the hypotheses as BVH files here")->type_name("DIR");
   verb->callback([&job, args] { job = [args] { return search(*args); }; });
-}
+}};
+
+}  // namespace
 
 }  // namespace motiongan::command

@@ -2,7 +2,7 @@
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/data/clip_source.hpp"
 #include "motiongan/motion/motion.hpp"
-#include "show.hpp"
+#include "shared/show.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -33,9 +33,7 @@ int view_clips(ViewArgs args) {
   return 0;
 }
 
-}  // namespace
-
-void add_view(CLI::App& app, Job& job) {
+const Verb view_verb{"view", [](CLI::App& app, Job& job) {
   CLI::App* verb = app.add_subcommand("view", "Show BVH clips side by side as stick figures");
   const auto args = std::make_shared<ViewArgs>();
   verb->add_option("FILES", args->files, "BVH files, or folders of them")->required()->type_name("");
@@ -48,6 +46,8 @@ void add_view(CLI::App& app, Job& job) {
       ->type_name("HZ")
       ->check(CLI::Range(1e-3, 1e4));
   verb->callback([&job, args] { job = [args] { return view_clips(*args); }; });
-}
+}};
+
+}  // namespace
 
 }  // namespace motiongan::command

@@ -1,47 +1,30 @@
 // A ranker as the command keeps it: what `train ranker` writes and `evaluate` reads.
 #pragma once
-#include "captioned_data.hpp"
 #include "motiongan/train/ranker_trainer.hpp"
+#include "shared/captioned_data.hpp"
 
 namespace motiongan::command {
 
+/// What a run is. Kept in its checkpoint, so that --resume needs none of it.
 struct RankerArgs : CaptionedDataArgs {
-  // What a run is. Kept in its checkpoint, so that --resume needs none of it.
-  std::string kind = "rnn";
   RankerOptions model;
   RankerTrainOptions training;
-  // What only this start of it is.
-  std::string save;
-  bool resume = false;
-  RankerRunOptions run;
+
+  void list_fields(FieldList& list) {
+    CaptionedDataArgs::list_fields(list);
+    model.list_fields(list);
+    training.list_fields(list);
+  }
 };
 
-/// Calls f(name, member) for all that is kept, by the name of its option.
-template <class F>
-void each_kept(RankerArgs& a, const F& f) {
-  each_kept_of_data(a, f);
-  f("--ranker", a.kind);
-  f("--hidden", a.model.hidden);
-  f("--taps", a.model.taps);
-  f("--iterations", a.training.iterations);
-  f("--batch", a.training.batch);
-  f("--descriptions", a.training.descriptions);
-  f("--learning-rate", a.training.adam.learning_rate);
-  f("--beta1", a.training.adam.beta1);
-  f("--beta2", a.training.adam.beta2);
-  f("--epsilon", a.training.adam.epsilon);
-  f("--seed", a.training.seed);
-}
-
-/// Puts the choices that are given as words, and what follows from other options, where the library has them.
-inline void fill_in(RankerArgs& a) {
-  fill_in_data(a, "heading");
-  a.model.kind = a.kind == "cnn" ? RankerKind::cnn : RankerKind::rnn;
+/// Sets what follows from other options. Throws Error for windows that the network cannot have.
+inline void fill_in_choices(RankerArgs& a) {
+  fill_in_data(a, motion::RootRotation::heading);
   a.model.seed = a.training.seed;
-  if (a.kind == "cnn")
+  if (a.model.kind == RankerKind::cnn)
     levels_of(a.data.frames);
   else
-    require(a.data.frames >= 2, "--frames ", a.data.frames, ": expected at least 2");
+    require(a.data.frames >= 2, "--frames is ", a.data.frames, ", expected at least 2");
 }
 
 /// The ranker's file: the one given, or the one in the folder of a run.

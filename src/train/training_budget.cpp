@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "motiongan/formats/text_file.hpp"
+#include "motiongan/train/progress.hpp"
+#include "shared/signals.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -70,6 +72,58 @@ double seconds_trained(const RunFiles& files, std::size_t iterations) {
     last = seconds[i];
   }
   return sum + last;
+}
+
+std::size_t iterations_of(const TrainingBudget& budget, std::size_t steps) {
+  return budget.iterations > 0 ? budget.iterations : max_iterations(steps);
+}
+
+bool train_within(Trainer& trainer, const std::function<void(const fs::path&)>& write_split, RunOptions run,
+                  const TrainingBudget& budget, const std::string& name) {
+  const RunFiles files{run.save_dir};
+  std::size_t done = 0;
+  double minutes = 0;
+  run.resume = fs::exists(files.checkpoint());
+  if (run.resume) {
+    done = read_run_record(files.checkpoint()).iteration;
+    minutes = seconds_trained(files, done) / 60;
+  }
+  fmt::print("{}: training for {}{}\n", name, described(budget),
+             run.resume
+                 ? fmt::format("; {} after {} are done", counted(done, "iteration"), duration(60 * minutes))
+                 : "");
+  const bool time_is_left = budget.minutes == 0 || minutes < budget.minutes;
+  if (time_is_left && done < trainer.iterations()) {
+    ProgressBar bar(0, {.label = name});
+    bar.start(budget.iterations, done);
+    if (budget.minutes > 0) run.max_minutes = budget.minutes - minutes;
+    run.save_every_minutes = budget.save_every_minutes;
+    run.log_every = budget.log_every;
+    run.should_stop = [] { return caught_signal() != 0; };
+    run.report = [&](std::size_t iteration, std::span<const NamedLoss> losses) {
+      std::vector<NamedValue> values;
+      for (const NamedLoss& loss : losses) values.emplace_back(loss.name, loss.value);
+      bar.update(iteration, values);
+    };
+    done = run_training(trainer, write_split, run).iterations;
+    bar.finish();
+    if (caught_signal() != 0) {
+      fmt::print("{}: stopped after {}; the same command continues\n", name, counted(done, "iteration"));
+      return false;
+    }
+  }
+  mark_finished(run.save_dir, budget, done);
+  fmt::print("{}: finished after {}\n", name, counted(done, "iteration"));
+  return true;
+}
+
+bool unless_diverged(const std::string& name, const std::function<bool()>& train) {
+  try {
+    return train();
+  } catch (const DivergedError& error) {
+    fmt::print(stderr, "motiongan: {}: {}\n", name, error.what());
+    return true;
+  }
 }
 
 }  // namespace motiongan::command

@@ -3,10 +3,8 @@
 #pragma once
 #include <optional>
 
-#include "command.hpp"
-#include "motiongan/train/progress.hpp"
+#include "shared/options.hpp"
 #include "motiongan/train/run.hpp"
-#include "signals.hpp"
 
 namespace motiongan::command {
 
@@ -37,66 +35,16 @@ void mark_finished(const fs::path& folder, const TrainingBudget& budget, std::si
 /// Seconds that a run has been trained for, up to its checkpoint: its log counts from every start anew.
 double seconds_trained(const RunFiles& files, std::size_t iterations);
 
-namespace budget_detail {
-template <class Losses>
-std::vector<NamedValue> shown(const Losses& losses) {
-  std::vector<NamedValue> out;
-  for (const LossColumn& column : columns(losses)) out.emplace_back(column.first, column.second);
-  return out;
-}
-}  // namespace budget_detail
+/// The iterations that a training of such steps may have: those of the budget, or as many as there can be.
+std::size_t iterations_of(const TrainingBudget& budget, std::size_t steps);
 
-/// Trains the run in run.save_dir on until its budget is used up; whether it got there, which it did not if a
-/// signal stopped it.
-template <class Losses, class Model, class Data, class Options>
-bool train_within(Model& model, const Data& data, const Options& options, BasicRunOptions<Losses> run,
-                  const TrainingBudget& budget, std::string_view name) {
-  const RunFiles files{run.save_dir};
-  std::size_t done = 0;
-  double minutes = 0;
-  run.resume = fs::exists(files.checkpoint());
-  if (run.resume) {
-    done = read_run_record(files.checkpoint()).iteration;
-    minutes = seconds_trained(files, done) / 60;
-  }
-  fmt::print("{}: training for {}{}\n", name, described(budget),
-             run.resume
-                 ? fmt::format("; {} after {} are done", counted(done, "iteration"), duration(60 * minutes))
-                 : "");
-  const bool time_is_left = budget.minutes == 0 || minutes < budget.minutes;
-  if (time_is_left && done < options.iterations) {
-    ProgressBar bar(0, {.label = std::string(name)});
-    bar.start(budget.iterations, done);
-    if (budget.minutes > 0) run.max_minutes = budget.minutes - minutes;
-    run.save_every_minutes = budget.save_every_minutes;
-    run.log_every = budget.log_every;
-    run.should_stop = [] { return caught_signal() != 0; };
-    run.report = [&](std::size_t iteration, const Losses& losses) {
-      bar.update(iteration, budget_detail::shown(losses));
-    };
-    done = train(model, data, options, run).iterations;
-    bar.finish();
-    if (caught_signal() != 0) {
-      fmt::print("{}: stopped after {}; the same command goes on\n", name, counted(done, "iteration"));
-      return false;
-    }
-  }
-  mark_finished(run.save_dir, budget, done);
-  fmt::print("{}: finished after {}\n", name, counted(done, "iteration"));
-  return true;
-}
+/// Trains the run in run.save_dir on until its budget is used up. Returns whether it got there, which it did
+/// not if a signal stopped it.
+bool train_within(Trainer& trainer, const std::function<void(const fs::path&)>& write_split, RunOptions run,
+                  const TrainingBudget& budget, const std::string& name);
 
-/// The same, but a run that diverges, as one without its penalty might, is told and does not cost the others
-/// their turn: it stays as it was last saved.
-template <class Train>
-bool unless_diverged(std::string_view name, const Train& train) {
-  try {
-    return train();
-  } catch (const Error& error) {
-    if (std::string_view(error.what()).find("training diverged") == std::string_view::npos) throw;
-    fmt::print(stderr, "motiongan: {}: {}\n", name, error.what());
-    return true;
-  }
-}
+/// The same for a run that may diverge, as one without its penalty might: that is reported and does not cost
+/// the others their turn; the run stays as it was last saved.
+bool unless_diverged(const std::string& name, const std::function<bool()>& train);
 
 }  // namespace motiongan::command

@@ -1,4 +1,4 @@
-// The sweep: what it computes, what it leaves out, what it refuses.
+// grad(): results, skipped work, errors.
 #include <doctest/doctest.h>
 
 #include <motiongan/core/random.hpp>
@@ -20,7 +20,7 @@ Var leaf(std::vector<double> values) {
 Var constant(std::vector<double> values) { return leaf(std::move(values)).detach(); }
 std::vector<double> host(const Var& v) { return v.value().to_host<double>(); }
 
-/// x itself; `asked` counts how often a derivative by it was computed.
+/// The identity; `asked` counts how often its derivative was computed.
 Var watched(const Var& x, int& asked) {
   return record("watched", {x}, x.value(),
                 [&asked](const Node&, const Var& g, const Needs&) -> std::vector<Var> {
@@ -37,7 +37,7 @@ void check_near(const std::vector<double>& found, const std::vector<double>& exp
 
 }  // namespace
 
-TEST_CASE("gradients are wanted where a leaf went in, and only there") {
+TEST_CASE("a result requires a gradient if an input does") {
   const Var x = leaf({1, 2}), c = constant({3, 4});
   CHECK(x.requires_grad());
   CHECK_FALSE(c.requires_grad());
@@ -49,7 +49,7 @@ TEST_CASE("gradients are wanted where a leaf went in, and only there") {
   CHECK((c + c).node()->inputs.empty());
 }
 
-TEST_CASE("NoGrad records nothing, and ends with its scope") {
+TEST_CASE("NoGrad disables recording within its scope") {
   const Var x = leaf({1, 2});
   {
     const NoGrad scope;
@@ -60,7 +60,7 @@ TEST_CASE("NoGrad records nothing, and ends with its scope") {
     CHECK(host(y) == std::vector<double>{1, 4});
     {
       const NoGrad inner;
-      const NoGrad off(false);  // does not switch recording on again
+      const NoGrad off(false);  // does not re-enable recording
       CHECK_FALSE((x + x).requires_grad());
     }
     CHECK_FALSE((x + x).requires_grad());
@@ -68,7 +68,7 @@ TEST_CASE("NoGrad records nothing, and ends with its scope") {
   CHECK((x * x).requires_grad());
 }
 
-TEST_CASE("seeds: ones where none is given, weights where one is, and their shapes are checked") {
+TEST_CASE("seeds: ones by default, weights if given, shapes checked") {
   const Var x = leaf({1, 2, 3});
   check_near(host(grad(square(x), {x})[0]), {2, 4, 6});
   check_near(host(grad({square(x)}, {constant({1, 10, 100})}, {x})[0]), {2, 40, 600});
@@ -78,25 +78,25 @@ TEST_CASE("seeds: ones where none is given, weights where one is, and their shap
   CHECK_THROWS_WITH_AS(grad({square(x)}, {}, {x}), "grad: 1 outputs but 0 seeds", Error);
 }
 
-TEST_CASE("a constant cannot be differentiated by") {
+TEST_CASE("no gradient with respect to a constant") {
   const Var x = leaf({1}), c = constant({2});
   CHECK_THROWS_AS(grad(x * c, {c}), Error);
   CHECK_THROWS_AS(grad(x * c, {x.detach()}), Error);
   CHECK_THROWS_AS(grad(x * x, {Var()}), Error);
 }
 
-TEST_CASE("an input without influence has a gradient of zeros") {
+TEST_CASE("an unused input has a zero gradient") {
   const Var x = leaf({1, 2}), unused = leaf({5, 6, 7});
   const std::vector<Var> g = grad(square(x), {x, unused});
   check_near(host(g[0]), {2, 4});
   CHECK(host(g[1]) == std::vector<double>{0, 0, 0});
-  // One that is younger than the output, and one that is cut off.
+  // One newer than the output, and one that is detached.
   const Var y = square(x), later = square(leaf({1, 2}));
   CHECK(host(grad(y, {later})[0]) == std::vector<double>{0, 0});
   CHECK(host(grad(constant({3}), {x})[0]) == std::vector<double>{0, 0});
 }
 
-TEST_CASE("outputs and values half way may be inputs") {
+TEST_CASE("outputs and intermediate values can be inputs") {
   const Var x = leaf({3}), y = square(x), z = square(y);
   CHECK(host(grad(z, {z})[0]) == std::vector<double>{1});
   const std::vector<Var> g = grad(z, {y, x, z});
@@ -105,7 +105,7 @@ TEST_CASE("outputs and values half way may be inputs") {
   check_near(host(g[2]), {1});
 }
 
-TEST_CASE("one value used several times: its gradients add up") {
+TEST_CASE("the gradients of a value used several times add up") {
   const Var x = leaf({2});
   check_near(host(grad(x * x * x, {x})[0]), {12});
   check_near(host(grad(x + x + x, {x})[0]), {3});
@@ -115,7 +115,7 @@ TEST_CASE("one value used several times: its gradients add up") {
   check_near(host(grad(x * x, {x, x})[1]), {4});
 }
 
-TEST_CASE("branches that lead to no wanted input are not computed") {
+TEST_CASE("branches without a requested input are skipped") {
   int left = 0, right = 0;
   const Var a = leaf({1, 2}), b = leaf({3, 4});
   const Var z = watched(square(a), left) * watched(square(b), right);
@@ -126,7 +126,7 @@ TEST_CASE("branches that lead to no wanted input are not computed") {
   CHECK(left == 2);
   CHECK(right == 1);
 
-  // An op is told which of its inputs to care for, and what is older than the wanted input is not visited.
+  // An op knows which gradients are needed, and nodes older than the requested input are not visited.
   const Var middle = watched(square(a), left), end = square(middle);
   left = 0;
   grad(end, {middle});
@@ -144,7 +144,7 @@ TEST_CASE("branches that lead to no wanted input are not computed") {
   CHECK(both == 3);  // and g * a
 }
 
-TEST_CASE("without create_graph the result carries no graph, with it it can be differentiated again") {
+TEST_CASE("the result has a graph only with create_graph") {
   const Var x = leaf({0.5, -1});
   const Var plain = grad(x * x * x, {x})[0];
   CHECK_FALSE(plain.requires_grad());
@@ -153,7 +153,7 @@ TEST_CASE("without create_graph the result carries no graph, with it it can be d
   const Var gradient = grad(x * x * x, {x}, {.create_graph = true})[0];
   CHECK(gradient.requires_grad());
   check_near(host(grad(gradient, {x})[0]), {3, -6});
-  const NoGrad scope;  // recording is off for the sweep too
+  const NoGrad scope;  // recording is off for the backward pass too
   CHECK_FALSE(grad(gradient, {x}, {.create_graph = true})[0].requires_grad());
 }
 
@@ -168,21 +168,21 @@ TEST_CASE("third derivative of x^2 exp(a x)") {
   check_near(host(d), expected);
 }
 
-TEST_CASE("a mixed derivative does not depend on the order") {
+TEST_CASE("mixed derivatives do not depend on the order") {
   const Var x = leaf({0.3, -0.8}), y = leaf({1.1, 0.4});
   const Var f = tanh(x * y) * exp(x - y);
   const Var by_x = grad(f, {x}, {.create_graph = true})[0], by_y = grad(f, {y}, {.create_graph = true})[0];
   check_near(host(grad(by_x, {y})[0]), host(grad(by_y, {x})[0]));
 }
 
-TEST_CASE("a wrong derivative of an op is named") {
+TEST_CASE("an op's derivative of the wrong shape is rejected") {
   const Var x = leaf({1, 2});
   const Var y = record("crooked", {x}, x.value(),
                        [](const Node&, const Var& g, const Needs&) -> std::vector<Var> { return {sum(g)}; });
-  CHECK_THROWS_WITH_AS(grad(y, {x}), "derivative of crooked by input 0 has shape [1] instead of [2]", Error);
+  CHECK_THROWS_WITH_AS(grad(y, {x}), "gradient of crooked, input 0, has shape [1], expected [2]", Error);
 }
 
-TEST_CASE("an empty Var says so") { CHECK_THROWS_WITH_AS(Var().value(), "an empty Var has no value", Error); }
+TEST_CASE("an empty Var") { CHECK_THROWS_WITH_AS(Var().value(), "an empty Var has no value", Error); }
 
 TEST_CASE("gradients of two runs are equal bit for bit") {
   const auto run = [] {

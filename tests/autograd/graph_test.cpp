@@ -1,4 +1,4 @@
-// The graph itself: long chains, and memory that comes back.
+// The graph: long chains, and release of memory.
 #include <doctest/doctest.h>
 
 #include <motiongan/core/random.hpp>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t long_chain = 200'000;
 
-/// x twice over, as one op without work on the device: both inputs are the same value.
+/// 2x as one op without work on the device: both inputs are the same value.
 Var doubled(const Var& x) {
   return record("doubled", {x, x}, x.value(),
                 [](const Node&, const Var& g, const Needs&) -> std::vector<Var> {
@@ -22,13 +22,13 @@ Var doubled(const Var& x) {
 
 }  // namespace
 
-TEST_CASE("a chain of 200,000 operations is traversed and destroyed without the stack") {
+TEST_CASE("a chain of 200,000 operations is traversed and destroyed without recursion") {
   const Context context;
   const Var x = Var::leaf(full(context, {4}, 2));
   Var y = x;
   for (std::size_t i = 0; i < long_chain; ++i) y = reshape(y, i % 2 ? Shape{4} : Shape{2, 2});
   CHECK(grad(y, {x})[0].value().to_host() == std::vector<float>(4, 1));
-  // The recorded backward pass is a chain as long again.
+  // The recorded backward pass is a chain of the same length.
   Var gradient = grad({y}, {Var::leaf(full(context, {4}, 3))}, {x}, {.create_graph = true})[0];
   CHECK(gradient.value().to_host() == std::vector<float>(4, 3));
   y = Var();
@@ -36,7 +36,7 @@ TEST_CASE("a chain of 200,000 operations is traversed and destroyed without the 
   CHECK(context.statistics().bytes_in_use == 256);  // x alone
 }
 
-TEST_CASE("a long chain of operations that use one value twice") {
+TEST_CASE("a long chain of operations that use their input twice") {
   const Context context;
   const Var x = Var::leaf(full(context, {1}, 2));
   Var y = x;
@@ -46,7 +46,7 @@ TEST_CASE("a long chain of operations that use one value twice") {
   CHECK(x.node().use_count() == 1);
 }
 
-TEST_CASE("a node that somebody still holds outlives the graph around it") {
+TEST_CASE("a node still in use outlives the graph around it") {
   const Context context;
   const Var x = Var::leaf(full(context, {2}, 3));
   Var middle;
@@ -60,7 +60,7 @@ TEST_CASE("a node that somebody still holds outlives the graph around it") {
   CHECK(grad(middle, {x})[0].value().to_host() == std::vector<float>{6, 6});
 }
 
-TEST_CASE("memory returns to the pool after a sweep, of any order") {
+TEST_CASE("memory returns to the pool after backward passes of any order") {
   const Context context;
   const auto& now = context.statistics();
   const Var x = Var::leaf(random_normal(context, {.seed = 1}, 6, 3, 8)),
@@ -80,10 +80,10 @@ TEST_CASE("memory returns to the pool after a sweep, of any order") {
     CHECK(now.bytes_in_use == before);
     if (i == 0) allocations = now.allocations;
   }
-  CHECK(now.allocations == allocations);  // the later rounds found all they needed in the pool
+  CHECK(now.allocations == allocations);  // later rounds are served from the pool
 }
 
-TEST_CASE("a sweep that fails leaves nothing behind") {
+TEST_CASE("a failed backward pass leaks nothing") {
   const Context context;
   const Var x = Var::leaf(full(context, {2}, 1));
   const std::size_t before = context.statistics().bytes_in_use;

@@ -48,7 +48,7 @@ TEST_CASE("evaluate motion: files beside files") {
       CHECK(said.status != 0);
       CHECK_MESSAGE(said.has(why), said.text);
     };
-    refused("--generated made --real real --feet Left,Right", "there is no joint 'Left' to be a foot");
+    refused("--generated made --real real --feet Left,Right", "there is no joint 'Left' to use as a foot");
     refused("--generated made --real nowhere", "nowhere");
     refused("--generated made --real real --rate 0.2", "holds no clip of four frames at 0.2 per second");
     refused("--generated made --real real --unit-metres 0", "expected a number above 0");

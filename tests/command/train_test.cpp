@@ -66,7 +66,7 @@ TEST_CASE("the recurrent networks: any number of frames, stopped and resumed") {
   CHECK(model.has("final-cut off"));
   const Said cnn_critic = call("train dvgan --procedural 6 --generator rnn --frames 12 --save other");
   CHECK(cnn_critic.status == 1);
-  CHECK(cnn_critic.has("12 was asked; the nearest are 8 and 16"));
+  CHECK(cnn_critic.has("12; the nearest are 8 and 16"));
   CHECK(call("train dvgan --procedural 6 --generator gru --save other").status > 1);  // usage
 }
 
@@ -111,7 +111,7 @@ TEST_CASE("a training that cannot be is refused before it begins") {
   refused("", "there is nothing to train on");
   refused("nowhere", "nowhere does not exist");
   refused("clips --procedural 4", "not both");
-  refused("clips --frames 33", "33 was asked; the nearest are 32 and 64");
+  refused("clips --frames 33", "33; the nearest are 32 and 64");
   refused("clips --frames 64", "none of 3 clips holds 64 frames at 4 per second");
   refused("--resume", "--resume needs --save");
   refused("--resume --save empty", "there is no run to resume in empty");

@@ -7,7 +7,7 @@ inline constexpr File broken_files[] = {
     {"prelude", prelude}, {"elementwise", elementwise}, {"softmax", broken}};
 }
 
-#define files broken_files  // so that cl/softmax.cl is the text above, in this program only
+#define files broken_files  // replaces cl/softmax.cl by the text above, in this program only
 #include <motiongan/core/program.hpp>
 #undef files
 
@@ -17,7 +17,7 @@ inline constexpr File broken_files[] = {
 
 using namespace motiongan;
 
-TEST_CASE("a program that does not build says why and where") {
+TEST_CASE("the error of a failed build contains the log and the file") {
   const Context context;
   const Tensor x(context, {4});
   std::string text = "no error";

@@ -1,4 +1,4 @@
-// The Context: its buffer pool and limit, its environment variables, its errors.
+// Context: buffer pool, memory limit, environment variables, errors.
 #include <doctest/doctest.h>
 
 #include <cstdlib>
@@ -11,7 +11,7 @@ using namespace motiongan::testing;
 
 namespace {
 
-/// An environment variable, set as long as this lives.
+/// Sets an environment variable for its lifetime.
 class Setting {
  public:
   Setting(const char* name, const char* value) : name_(name) {
@@ -32,7 +32,7 @@ class Setting {
 
 }  // namespace
 
-TEST_CASE("a buffer that was given back serves again") {
+TEST_CASE("a released buffer is reused") {
   const Context context;
   const auto& now = context.statistics();
   for (int i = 0; i < 3; ++i) const Tensor a(context, {100, 10}), b(context, {7});
@@ -51,7 +51,7 @@ TEST_CASE("a buffer that was given back serves again") {
   }
   { const Tensor a_little_smaller(context, {990}); }
   CHECK(now.allocations == 3);
-  { const Tensor much_smaller(context, {300}); }  // would waste the large one
+  { const Tensor much_smaller(context, {300}); }  // too small to reuse the large one
   CHECK(now.allocations == 4);
   CHECK(now.peak_bytes == now.bytes_cached);
 
@@ -72,16 +72,16 @@ TEST_CASE("a view keeps the buffer after its tensor is gone") {
   CHECK(piece.to_host() == std::vector<float>{3, 4, 5});
 }
 
-TEST_CASE("the memory limit is kept, and the error says what was asked, is in use, and is allowed") {
+TEST_CASE("the memory limit holds, and the error states request, use and limit") {
   const Context context({.memory_limit = 1'000'000});
   const Tensor half(context, {125'000});  // 0.5 MB
   const std::string text = message_of([&] { Tensor(context, {150'000}); });
-  CHECK(says(text, "out of device memory: 0.6 MB was asked"));
-  CHECK(says(text, "0.504 MB are in use of a limit of 1 MB"));
+  CHECK(says(text, "out of device memory: 0.6 MB requested"));
+  CHECK(says(text, "0.504 MB already in use, limit 1 MB"));
   CHECK(says(text, "MOTIONGAN_MEMORY_MB"));
-  CHECK(context.statistics().bytes_in_use < 510'000);  // nothing leaked, and what fits still works
+  CHECK(context.statistics().bytes_in_use < 510'000);  // nothing leaked, and allocations that fit still work
   { const Tensor more(context, {110'000}); }
-  // Now 0.44 MB are cached: they make room for something of another size.
+  // Now 0.44 MB are cached; they are freed for a request of another size.
   const Tensor other(context, {60'000});
   CHECK(context.statistics().bytes_in_use + context.statistics().bytes_cached <= 1'000'000);
 }
@@ -100,7 +100,7 @@ TEST_CASE("MOTIONGAN_MEMORY_MB") {
     const Context context;
     CHECK_NOTHROW(Tensor(context, {400'000}));
     CHECK(says(message_of([&] { Tensor(context, {600'000}); }), "a limit of 2 MB"));
-    const Context more({.memory_limit = 4'000'000});  // the option counts more than the variable
+    const Context more({.memory_limit = 4'000'000});  // the option takes precedence
     CHECK_NOTHROW(Tensor(more, {600'000}));
   }
   for (const std::string garbage :
@@ -108,11 +108,11 @@ TEST_CASE("MOTIONGAN_MEMORY_MB") {
     const Setting setting("MOTIONGAN_MEMORY_MB", garbage.c_str());
     const std::string text = message_of([] { Context(); });
     CAPTURE(garbage);
-    CHECK(says(text, concat("MOTIONGAN_MEMORY_MB=\"", garbage, "\"")));
+    CHECK(says(text, concat("MOTIONGAN_MEMORY_MB is \"", garbage, "\"")));
   }
 }
 
-TEST_CASE("a device that is not there is an error, by option and by variable") {
+TEST_CASE("an unknown device is an error, by option and by variable") {
   CHECK(says(message_of([] { Context({.device = "no such device"}); }), "\"no such device\""));
   const Setting setting("MOTIONGAN_DEVICE", "nor this one");
   CHECK(says(message_of([] { Context(); }), "\"nor this one\""));
@@ -143,7 +143,7 @@ TEST_CASE("errors of launches name kernel, file, sizes and shapes") {
       [&] { context.launch("elementwise", "fill", LaunchGrid::items(15), x, std::size_t{15}, KernelReal{1}, KernelReal{2}); });
   CHECK(says(extra, "argument 4 of kernel fill"));
 
-  const std::size_t large = std::size_t{1} << 20;  // items in one group: no device takes that
+  const std::size_t large = std::size_t{1} << 20;  // items in one work-group: more than any device supports
   const std::string grid = message_of([&] {
     context.launch("elementwise", "affine", LaunchGrid{1, {large, 1, 1}, {large, 1, 1}}, x, out, x.size(),
                    KernelReal{2.5}, KernelReal{0});
@@ -158,7 +158,7 @@ TEST_CASE("errors of launches name kernel, file, sizes and shapes") {
              }),
              "kernel fill: 8589934592 does not fit 32 bits"));
 
-  // The context works on after all of that.
+  // The context still works after the errors.
   CHECK(affine(Var::constant(x), 2).value().to_host() == std::vector<float>(15, 2));
 }
 

@@ -1,4 +1,4 @@
-// Choosing a device by a wish, on lists made by hand.
+// Device selection, on made-up lists of devices.
 #include <doctest/doctest.h>
 
 #include <motiongan/core/device.hpp>
@@ -15,7 +15,7 @@ Device made(const char* name, const char* platform, cl_device_type type) {
   return device;
 }
 
-/// A CPU first: the loader's order is no order of merit.
+/// A CPU first: the loader's order is not a ranking.
 const std::vector<Device> four{
     made("pthread-epyc", "Portable Computing Language", CL_DEVICE_TYPE_CPU),
     made("GeForce RTX 3060", "NVIDIA CUDA", CL_DEVICE_TYPE_GPU),
@@ -40,13 +40,13 @@ bool says(const std::string& text, const char* part) { return text.find(part) !=
 
 }  // namespace
 
-TEST_CASE("no wish: a GPU where there is one, else the first") {
+TEST_CASE("default: the first GPU, else the first device") {
   CHECK(chosen("") == "GeForce RTX 3060");
   CHECK(chosen("", {four[0], four[3]}) == "pthread-epyc");
   CHECK(chosen("", {four[3], four[0]}) == "Odd: 7");
 }
 
-TEST_CASE("kinds, parts of names in any case, and platforms") {
+TEST_CASE("selection by kind, by part of the name in any case, and by platform") {
   CHECK(chosen("cpu") == "pthread-epyc");
   CHECK(chosen("CPU") == "pthread-epyc");
   CHECK(chosen("gpu") == "GeForce RTX 3060");
@@ -57,16 +57,16 @@ TEST_CASE("kinds, parts of names in any case, and platforms") {
   CHECK(chosen("accelerators") == "Odd: 7");
 }
 
-TEST_CASE("an index takes a later match") {
+TEST_CASE("an index selects a later match") {
   CHECK(chosen("gpu:0") == "GeForce RTX 3060");
   CHECK(chosen("gpu:1") == "GeForce RTX 4090");
   CHECK(chosen("NVIDIA:1") == "GeForce RTX 4090");
   CHECK(chosen("cpu:0") == "pthread-epyc");
   CHECK(chosen(":3") == "Odd: 7");
-  CHECK(chosen("odd:") == "Odd: 7");  // this colon belongs to the name
+  CHECK(chosen("odd:") == "Odd: 7");  // the colon is part of the name
 }
 
-TEST_CASE("nothing fits: the message says what was asked and lists what there is") {
+TEST_CASE("no match: the message has the request and the list of devices") {
   const std::string absent = message("gpu", {four[0], four[3]});
   CHECK(says(absent, "\"gpu\""));
   CHECK(says(absent, "0 match"));
@@ -75,7 +75,7 @@ TEST_CASE("nothing fits: the message says what was asked and lists what there is
   CHECK(says(absent, "NAME:index"));
 
   const std::string late = message("nvidia:2");
-  CHECK(says(late, "2 match the name, index 2 was asked"));
+  CHECK(says(late, "2 match the name, index 2 requested"));
   CHECK(says(late, "gpu  GeForce RTX 4090"));
 
   CHECK(says(message("radeon"), "\"radeon\""));
@@ -90,7 +90,7 @@ TEST_CASE("no device at all: the message says what to install") {
   }
 }
 
-TEST_CASE("the devices of this machine have names, memory and vectors") {
+TEST_CASE("the devices of this machine have a name, memory and a vector width") {
   const std::vector<Device> here = all_devices();
   REQUIRE_FALSE(here.empty());
   for (const Device& device : here) {

@@ -1,5 +1,4 @@
-// Random matrix products with all their options, and what they must give, computed by a plain loop on the
-// host.
+// Random matrix products with all their options, and their reference result from a plain loop on the host.
 #pragma once
 #include <algorithm>
 #include <limits>
@@ -8,7 +7,7 @@
 
 namespace motiongan::test {
 
-/// What stands around C, and must stay.
+/// Value of the elements around C, which must not change.
 constexpr double sentinel = 12345;
 
 inline Context& context_of(Precision precision) {
@@ -17,7 +16,7 @@ inline Context& context_of(Precision precision) {
   return precision == Precision::f32 ? f32 : f64;
 }
 
-/// A call without its data: everything that a test varies.
+/// A call without its data: the options that a test varies.
 struct Plan {
   std::size_t m = 1, n = 1, k = 1;
   bool a_transposed = false, b_transposed = false;
@@ -27,7 +26,7 @@ struct Plan {
   bool accumulate = false, bias = false, residual = false, relu = false;
 };
 
-/// A GemmCall on the device and what it is made of on the host.
+/// A GemmCall on the device, and its data on the host.
 struct Problem {
   GemmCall call;
   std::vector<double> a, b, c, bias, residual;
@@ -43,7 +42,7 @@ inline std::vector<double> random_values(std::mt19937& random, std::size_t n, Pr
   return values;
 }
 
-/// A tensor that is a view into a larger one, so that the offsets of tensors count.
+/// A tensor that is a view of a larger one, to test tensor offsets.
 inline Tensor upload(const Context& context, const std::vector<double>& values, std::size_t shift) {
   Tensor whole(context, {values.size() + shift});
   Tensor view = whole.view(shift, {values.size()});
@@ -67,7 +66,7 @@ inline Problem make(const Context& context, const Plan& plan, std::mt19937& rand
   g.b_batch_stride = b_rows * g.b_ld;
   g.c_batch_stride = g.m * g.c_ld + plan.offset;
   for (std::size_t s = 0; s < g.segments; ++s) {
-    g.a_offset[s] = plan.offset + s * (plan.offset + 1);  // the segments' A overlap, as a convolution's do
+    g.a_offset[s] = plan.offset + s * (plan.offset + 1);  // the segments of A overlap, as in a convolution
     g.b_offset[s] = plan.offset + (g.segments - 1 - s) * g.batch * g.b_batch_stride;
   }
   g.c_offset = plan.offset + 5;
@@ -75,7 +74,7 @@ inline Problem make(const Context& context, const Plan& plan, std::mt19937& rand
   problem.b = random_values(random, g.b_offset[0] + g.batch * g.b_batch_stride, precision);
   problem.c.assign(g.c_offset + g.batch * g.c_batch_stride + 7, sentinel);
   const std::vector<double> start = random_values(random, g.batch * g.m * g.n, precision);
-  // Without `accumulate` C starts as NaN: what it held must not matter.
+  // Without `accumulate` C starts as NaN: its old contents must not matter.
   for (std::size_t z = 0; z < g.batch; ++z)
     for (std::size_t i = 0; i < g.m; ++i)
       for (std::size_t j = 0; j < g.n; ++j)
@@ -97,7 +96,7 @@ inline Problem make(const Context& context, const Plan& plan, std::mt19937& rand
   return problem;
 }
 
-/// C as it must be, in double.
+/// The expected C, in double.
 inline std::vector<double> expected(const Problem& problem) {
   const GemmCall& g = problem.call;
   std::vector<double> c = problem.c;

@@ -10,14 +10,14 @@ using namespace motiongan::test;
 
 namespace {
 
-/// Runs a plan and compares all of C's tensor, the elements around C included.
+/// Runs a plan and compares all of C's tensor, including the elements around C.
 void check(Precision precision, const Plan& plan, GemmEngine engine, std::mt19937& random) {
   const Context& context = context_of(precision);
   const Problem problem = make(context, plan, random);
   gemm(context, problem.call, engine);
   const std::vector<double> ours = problem.call.c.to_host<double>(), reference = expected(problem);
   const double unit = precision == Precision::f64 ? 1e-13 : 1e-5;
-  // Operands lie in [-1, 1]: the size of a sum, and of its rounding, goes with the root of its length.
+  // Operands are in [-1, 1]: a sum, and its rounding error, grow with the square root of its length.
   const double allowed = unit * (1 + std::sqrt(static_cast<double>(plan.k * plan.segments)));
   std::size_t wrong = 0, first_wrong = 0;
   for (std::size_t e = 0; e < ours.size(); ++e)
@@ -53,7 +53,7 @@ Plan random_plan(std::mt19937& random, std::size_t largest) {
   return plan;
 }
 
-TEST_CASE("native: every size of a dimension beside small ones, all transposes") {
+TEST_CASE("native: all sizes of one dimension with small others, all transposes") {
   std::mt19937 random(1);
   for (const Precision precision : {Precision::f32, Precision::f64})
     for (const std::size_t size : sizes)
@@ -65,13 +65,13 @@ TEST_CASE("native: every size of a dimension beside small ones, all transposes")
         }
 }
 
-TEST_CASE("native: random combinations of everything") {
+TEST_CASE("native: random combinations of all options") {
   std::mt19937 random(2);
   for (int i = 0; i < 400; ++i)
     check(i % 2 ? Precision::f32 : Precision::f64, random_plan(random, 257), GemmEngine::native, random);
 }
 
-TEST_CASE("native: sums longer than one block, one and several segments") {
+TEST_CASE("native: sums longer than a block, one and several segments") {
   std::mt19937 random(3);
   for (const Precision precision : {Precision::f32, Precision::f64})
     for (const std::size_t k : {767, 768, 769, 1600, 2500})
@@ -92,7 +92,7 @@ TEST_CASE("native: sums longer than one block, one and several segments") {
                 GemmEngine::native, random);
 }
 
-// Few plans: CLBlast compiles each kind of product for seconds on a CPU device.
+// Few plans: CLBlast takes seconds to compile each kind of product on a CPU device.
 TEST_CASE("CLBlast: transposes, strides, segments, batch, epilogue") {
   std::mt19937 random(4);
   const GemmEngine engine = GemmEngine::clblast;
@@ -118,7 +118,7 @@ TEST_CASE("CLBlast: transposes, strides, segments, batch, epilogue") {
         engine, random);
 }
 
-TEST_CASE("no terms: C is the epilogue of what it starts from") {
+TEST_CASE("k = 0: C is the epilogue of its initial value") {
   std::mt19937 random(5);
   for (const GemmEngine engine : {GemmEngine::native, GemmEngine::clblast})
     for (const bool accumulate : {false, true}) {
@@ -129,11 +129,11 @@ TEST_CASE("no terms: C is the epilogue of what it starts from") {
     }
   const Context& context = context_of(Precision::f32);
   GemmCall call{.m = 2, .n = 3, .k = 0, .c = Tensor(context, {2, 3}), .c_ld = 3};
-  gemm(context, call);  // A and B need not exist
+  gemm(context, call);  // A and B may be missing
   CHECK(call.c.to_host<double>() == std::vector<double>(6, 0.0));
 }
 
-TEST_CASE("nothing to write: C stays as it is") {
+TEST_CASE("empty C: nothing is written") {
   std::mt19937 random(6);
   check(Precision::f32, Plan{.m = 0, .n = 4, .k = 3}, GemmEngine::native, random);
   check(Precision::f32, Plan{.m = 4, .n = 0, .k = 3}, GemmEngine::clblast, random);
@@ -192,7 +192,7 @@ TEST_CASE("a row's bits do not depend on the rows around it, the columns beside 
   }
 }
 
-TEST_CASE("a transposed copy of B gives the same bits, so weights may be turned once for sampling") {
+TEST_CASE("a transposed copy of B gives the same bits, so weights can be transposed once for sampling") {
   std::mt19937 random(8);
   const Context& context = context_of(Precision::f32);
   const std::size_t n = 300, k = 257;
@@ -213,7 +213,7 @@ TEST_CASE("a transposed copy of B gives the same bits, so weights may be turned 
   }
 }
 
-TEST_CASE("a NaN reaches the result, through the ReLU too") {
+TEST_CASE("NaN propagates, also through the ReLU") {
   const Context& context = context_of(Precision::f32);
   std::vector<float> a(6, 1.0f);
   a[4] = std::numeric_limits<float>::quiet_NaN();
@@ -237,7 +237,7 @@ TEST_CASE("a NaN reaches the result, through the ReLU too") {
   }
 }
 
-TEST_CASE("wrong arguments are refused with the sizes") {
+TEST_CASE("invalid arguments are rejected, with the sizes") {
   const Context& context = context_of(Precision::f32);
   const auto good = [&] {
     return GemmCall{.m = 4,
@@ -283,15 +283,15 @@ TEST_CASE("wrong arguments are refused with the sizes") {
 
 }  // namespace
 
-TEST_CASE("a packed B changes no bit, whatever the size, and nothing around C") {
+TEST_CASE("packing B changes no bit, whatever the size, and nothing around C") {
   std::mt19937 random(11);
   for (const Precision precision : {Precision::f32, Precision::f64}) {
     const Context& context = context_of(precision);
     for (int i = 0; i < 150; ++i) {
       Plan plan = random_plan(random, 257);
       if (i % 3 == 0) plan.m = 1 + static_cast<std::size_t>(i % 2);
-      if (i % 4 == 0) plan.n = 1000 + static_cast<std::size_t>(i);  // enough panels for a row's own way
-      if (i % 10 == 0) plan.k = 1600;                               // more than is packed at once
+      if (i % 4 == 0) plan.n = 1000 + static_cast<std::size_t>(i);  // enough panels for the single-row kernel
+      if (i % 10 == 0) plan.k = 1600;                               // more than one packing block
       plan.a_transposed = false, plan.batch = 1;
       Problem problem = make(context, plan, random);
       CAPTURE(concat(problem.call));
@@ -311,7 +311,7 @@ TEST_CASE("a packed B changes no bit, whatever the size, and nothing around C") 
   }
 }
 
-TEST_CASE("the ReLU of C beside C, packed and not, on either engine, and nothing around it") {
+TEST_CASE("the extra ReLU output of C, packed or not, on either engine, and nothing around it") {
   std::mt19937 random(13);
   for (const Precision precision : {Precision::f32, Precision::f64}) {
     const Context& context = context_of(precision);
@@ -336,7 +336,7 @@ TEST_CASE("the ReLU of C beside C, packed and not, on either engine, and nothing
   }
 }
 
-TEST_CASE("native: a transposed A with long rows, which is turned first") {
+TEST_CASE("native: a transposed A with long rows, which is transposed first") {
   std::mt19937 random(12);
   for (const Precision precision : {Precision::f32, Precision::f64})
     for (const std::size_t m : {64u, 101u, 600u}) {

@@ -1,4 +1,4 @@
-// Philox: known answers, the device against the host, and what a random number may depend on.
+// Philox: known answers, device against host, and what a random number depends on.
 #include <doctest/doctest.h>
 
 #include <motiongan/core/random.hpp>
@@ -18,10 +18,10 @@ std::vector<float> normals(const RandomKey& key, std::size_t frames, std::size_t
   return random_normal(floats(), key, frames, batch, channels).to_host();
 }
 
-/// Uniform in (0, 1), as the device makes it of a word.
+/// Uniform in (0, 1) from a word, as on the device.
 double unit(std::uint32_t word) { return ((word >> 9) + 0.5) * 0x1p-23; }
 
-/// One number of random_normal, from the definition beside the kernel.
+/// One value of random_normal, from the definition in the kernel's comment.
 double host_normal(const RandomKey& key, std::uint32_t frame, std::uint32_t sample, std::uint32_t channel) {
   const std::uint32_t block = channel / 64, quarter = channel % 64 / 16, lane = channel % 16;
   const PhiloxWords w = philox({block * 16 + lane, key.first_frame + frame, key.first_sample + sample,
@@ -43,7 +43,7 @@ TEST_CASE("known answers of Philox 4x32-10 (Salmon et al., their test vectors)")
         PhiloxWords{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1});
 }
 
-TEST_CASE("uniform and whole numbers of the device are those of the host") {
+TEST_CASE("uniform values and integers of the device equal the host's") {
   const RandomKey key{.seed = 0x0123456789abcdefu, .stream = RandomStream::interpolation, .step = 70'001, .first_sample = 5};
   const std::size_t n = 1000;
   const std::vector<float> uniform = random_uniform(floats(), key, n).to_host();
@@ -58,15 +58,15 @@ TEST_CASE("uniform and whole numbers of the device are those of the host") {
   CHECK(*std::max_element(whole.begin(), whole.end()) == 16);
 }
 
-TEST_CASE("whole numbers are spread evenly") {
+TEST_CASE("integers are uniformly distributed") {
   std::vector<int> counts(10);
   const std::size_t n = 100'000;
   for (cl_int v : random_integers(floats(), {.seed = 3, .stream = RandomStream::cut}, n, 0, 10).to_host())
     ++counts.at(static_cast<std::size_t>(v));
-  for (int count : counts) CHECK(std::abs(count - 10'000) < 475);  // 5 deviations
+  for (int count : counts) CHECK(std::abs(count - 10'000) < 475);  // 5 standard deviations
 }
 
-TEST_CASE("normal numbers are those of the definition, in float and in double") {
+TEST_CASE("normal values follow the definition, in float and double") {
   const RandomKey key{
       .seed = 99, .stream = RandomStream::noise + 3, .step = 12, .first_sample = 40, .first_frame = 7};
   const Context doubles({.precision = Precision::f64});
@@ -89,7 +89,7 @@ TEST_CASE("normal numbers are those of the definition, in float and in double") 
   }
 }
 
-TEST_CASE("moments of the normal numbers") {
+TEST_CASE("moments of the normal values") {
   const std::vector<float> x = normals({.seed = 2024}, 10, 100, 1000);
   const double n = static_cast<double>(x.size());
   double mean = 0, square = 0, cube = 0, fourth = 0;
@@ -99,14 +99,14 @@ TEST_CASE("moments of the normal numbers") {
     cube += v * v * v / n;
     fourth += v * v * v * v / n;
   }
-  // Five deviations of each moment's estimate from 10^6 numbers.
+  // Five standard deviations of each moment's estimate from 10^6 values.
   CHECK(std::abs(mean) < 5 * std::sqrt(1 / n));
   CHECK(std::abs(square - 1) < 5 * std::sqrt(2 / n));
   CHECK(std::abs(cube) < 5 * std::sqrt(15 / n));
   CHECK(std::abs(fourth - 3) < 5 * std::sqrt(96 / n));
 }
 
-TEST_CASE("a sample is the same alone and in a batch, a frame the same in a longer array") {
+TEST_CASE("a sample is the same in any batch, a frame the same in any length") {
   const RandomKey key{.seed = 7, .stream = RandomStream::noise + 1, .step = 3};
   for (std::size_t channels : {1, 8, 16, 17, 64, 93, 256}) {
     const std::size_t frames = 4, batch = 9;
@@ -124,7 +124,7 @@ TEST_CASE("a sample is the same alone and in a batch, a frame the same in a long
     const std::vector<float> last = normals(later, 1, batch, channels);
     for (std::size_t i = 0; i < last.size(); ++i) REQUIRE(last[i] == all[3 * batch * channels + i]);
   }
-  // Each sample from a frame of its own, as the final cut needs it; also before frame 0.
+  // Each sample from its own first frame, as for the final cut; also before frame 0.
   const std::vector<cl_int> from{0, 2, 1};
   RandomKey earlier = key;
   earlier.first_frame = -1;
@@ -144,7 +144,7 @@ TEST_CASE("a sample is the same alone and in a batch, a frame the same in a long
   CHECK(random_uniform(floats(), fifth, 1).to_host()[0] == uniform[4]);
 }
 
-TEST_CASE("another seed, stream, step, sample or frame gives other numbers, the same key the same") {
+TEST_CASE("another seed, stream, step, sample or frame gives other values, an equal key equal ones") {
   const RandomKey key{.seed = 1, .stream = RandomStream::noise, .step = 1};
   const std::vector<float> reference = normals(key, 2, 2, 20);
   CHECK(normals(key, 2, 2, 20) == reference);
@@ -168,7 +168,7 @@ TEST_CASE("another seed, stream, step, sample or frame gives other numbers, the 
   }
 }
 
-TEST_CASE("samples with keys of their own have the numbers of random_normal") {
+TEST_CASE("per-sample keys give the values of random_normal") {
   const Context context;
   const std::uint64_t seeds[] = {7, 0x123456789abcdefull, 7};
   const std::uint32_t samples[] = {0, 4000000000u, 5};

@@ -1,4 +1,4 @@
-// Tensors: round trips, views, and uploads that do not wait.
+// Tensors: round trips, views, asynchronous uploads.
 #include <doctest/doctest.h>
 
 #include <motiongan/ops/elementwise.hpp>
@@ -17,7 +17,7 @@ std::vector<double> counting(std::size_t n, double first = 0) {
 
 }  // namespace
 
-TEST_CASE("values come back as they went in, in either precision and from either type") {
+TEST_CASE("round trips in either precision and from either type") {
   const std::vector<double> fine{0.1, -1e-30, 3e30, 1.0 / 3};
   std::vector<float> coarse(fine.begin(), fine.end());
   const Context floats, doubles({.precision = Precision::f64});
@@ -45,7 +45,7 @@ TEST_CASE("shapes, reshape and views") {
   const Tensor second = t.view(12, {3, 4});
   CHECK(second.offset() == 12);
   CHECK(second.to_host<double>() == counting(12, 12));
-  const Tensor inner = second.view(4, {4});  // a view of a view counts from the first one's start
+  const Tensor inner = second.view(4, {4});  // offsets in a view of a view are relative to the first view
   CHECK(inner.to_host<double>() == counting(4, 16));
   CHECK_THROWS_WITH_AS(second.view(10, {3}), "view of 3 elements from 10 does not fit [3, 4]", Error);
   CHECK_THROWS_AS(t.reshape({24}).view(25, {0}), Error);
@@ -58,7 +58,7 @@ TEST_CASE("shapes, reshape and views") {
   CHECK(t.to_host<double>()[20] == 20);
 }
 
-TEST_CASE("wrong numbers of values are refused") {
+TEST_CASE("wrong numbers of values are rejected") {
   const Context context;
   CHECK_THROWS_WITH_AS(Tensor::from(context, {2, 3}, counting(5)),
                        "5 values given for a tensor of shape [2, 3]", Error);
@@ -68,7 +68,7 @@ TEST_CASE("wrong numbers of values are refused") {
   CHECK_THROWS_WITH_AS(three.write(std::vector<cl_int>{1}), "1 values given for 3 indices", Error);
 }
 
-TEST_CASE("whole numbers come back, tensors without elements are harmless") {
+TEST_CASE("round trips of integers; empty tensors") {
   const Context context;
   const std::vector<cl_int> values{-5, 0, 2'000'000'000};
   CHECK(Indices(context, values).to_host() == values);
@@ -78,8 +78,8 @@ TEST_CASE("whole numbers come back, tensors without elements are harmless") {
   CHECK_FALSE(none.empty());
 }
 
-TEST_CASE("uploads keep their data though the host's array changes at once") {
-  // More writes in a row than the staging ring has slots, from one array, none of them waited for.
+TEST_CASE("uploads keep their data if the host's array changes afterwards") {
+  // More consecutive writes from one array than the staging ring has slots, without waiting.
   const Context context;
   const std::size_t writes = 200, n = 5000;
   std::vector<Tensor> tensors;
@@ -94,7 +94,7 @@ TEST_CASE("uploads keep their data though the host's array changes at once") {
     CHECK(tensors[i].to_host() == std::vector<float>(n, static_cast<float>(i)));
 }
 
-TEST_CASE("uploads to one tensor are seen by the kernels in between") {
+TEST_CASE("kernels between uploads to one tensor see the right data") {
   const Context context;
   Tensor x(context, {256});
   std::vector<Var> seen;
@@ -106,7 +106,7 @@ TEST_CASE("uploads to one tensor are seen by the kernels in between") {
     CHECK(seen[i].value().to_host() == std::vector<float>(256, 2.f * static_cast<float>(i)));
 }
 
-TEST_CASE("copies of every length and offset") {
+TEST_CASE("copies of all lengths and offsets") {
   const Context context;
   for (std::size_t n : {1, 3, 4, 15, 16, 17, 33, 100}) {
     const Tensor from = Tensor::from(context, {n + 3}, counting(n + 3)), to = full(context, {n + 5}, -1);

@@ -118,7 +118,7 @@ TEST_CASE("a broken description is refused with what is wrong") {
       {"skeleton", 3, "'skeleton' is number, expected HIERARCHY text"},
       {"skeleton", "HIERARCHY\nROOT a\n{\n  OFFSET 1 2\n}", "skeleton of the model:5:1"},
       {"root", "Nose", "root 'Nose' is not a joint"},
-      {"root_rotation", "euler", "\"euler\", expected \"expmap\", \"heading\" or \"velocity\""},
+      {"root_rotation", "euler", "\"euler\", expected one of expmap, heading, velocity"},
       {"root_position", 1, "'root_position' is number, expected true or false"},
       {"root_position", false, "normalizer of 12 dimensions does not fit a pose of 9"},
       {"rate", 0, "rate of 0"},

@@ -1,4 +1,4 @@
-// Runs a model on a golden file and says how far ours are from theirs.
+// Runs a model on a golden file and compares the results.
 #pragma once
 #include <motiongan/networks/cnn_critic.hpp>
 #include <motiongan/networks/cnn_generator.hpp>
@@ -47,7 +47,7 @@ inline void rnn_generator(const File& file, const Context& context, Pairs& outpu
   add_gradients(gradients, file, parameters, grad(loss, values_of(parameters)));
 }
 
-/// A critic of text and motion.
+/// A critic of motion and text.
 template <class Critic>
 void critic(Critic model, const File& file, const Context& context, Pairs& outputs, Pairs& gradients) {
   const auto parameters = named_parameters(model);
@@ -81,7 +81,7 @@ inline void rnn_critic(const File& file, const Context& context, Pairs& outputs,
 
 }  // namespace detail
 
-/// Compares one file, in the precision it was written in.
+/// Compares one file, in the precision it was written in. Throws Error for an unknown model.
 inline Report compare(const std::filesystem::path& path) {
   const File file(path);
   Report report;

@@ -1,4 +1,4 @@
-// The models of the second paper on golden files.
+// The attention models on golden files.
 #pragma once
 #include <motiongan/networks/attention_classifier.hpp>
 #include <motiongan/networks/attention_critic.hpp>

@@ -1,4 +1,4 @@
-// The baselines of motion completion on golden files.
+// The motion-completion baselines on golden files.
 #pragma once
 #include <motiongan/networks/erd.hpp>
 #include <motiongan/networks/lstm_3lr.hpp>
@@ -26,7 +26,7 @@ inline void seq2seq(const File& file, const Context& context, Pairs& outputs, Pa
   add_gradients(gradients, file, parameters, grad(loss, values_of(parameters)));
 }
 
-/// A model that is trained one step ahead and then runs on its own output.
+/// A model that predicts the next pose and then runs on its own output.
 template <class Model>
 void next_pose_model(const File& file, const Context& context, Pairs& outputs, Pairs& gradients) {
   Model model(Initializer(context, 1), {.dof = file.number("dof"), .hidden = file.number("hidden")});

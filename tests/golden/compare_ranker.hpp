@@ -9,10 +9,10 @@
 
 namespace motiongan::golden::detail {
 
-/// Clip i against all descriptions, of which description i is right.
+/// Scores clip i against all descriptions; description i is the right one.
 template <class Network>
 void ranker(const File& file, const Context& context, Pairs& outputs, Pairs& gradients) {
-  const bool is_cnn = std::is_same_v<Network, CnnRanker>;  // of the RNN any number of frames
+  const bool is_cnn = std::is_same_v<Network, CnnRanker>;  // the RNN takes any number of frames
   Network model(Initializer(context, 1), {.vocabulary = file.number("vocab"),
                                           .dof = file.number("dof"),
                                           .frames = is_cnn ? file.number("frames") : 2,

@@ -1,5 +1,5 @@
-// A golden file (a model's parameters, inputs and outputs, and all gradients, as PyTorch has them), and what
-// is said of ours beside it.
+// A golden file (a model's parameters, inputs, outputs and gradients from PyTorch), and the report of a
+// comparison.
 #pragma once
 #include <motiongan/nn/state_dict.hpp>
 #include <motiongan/nn/text_encoder.hpp>
@@ -7,7 +7,7 @@
 
 namespace motiongan::golden {
 
-/// One tensor of ours beside theirs.
+/// One tensor, ours and PyTorch's.
 struct Pair {
   std::string name;
   std::vector<double> ours, theirs;
@@ -19,7 +19,7 @@ struct Report {
   double worst = 0;  ///< see relative_errors
   std::size_t outputs = 0, gradients = 0;
   double tolerance = 0;
-  bool passed() const { return worst <= tolerance; }  // false for a NaN as well
+  bool passed() const { return worst <= tolerance; }  // false for NaN
 };
 
 inline double norm(const std::vector<double>& v) {
@@ -28,13 +28,13 @@ inline double norm(const std::vector<double>& v) {
   return std::sqrt(s);
 }
 
-/// |ours - theirs| against the larger of |theirs| and a hundredth of the largest |theirs| of the group: some
-/// gradients are zero by symmetry, and their rounding errors mean nothing.
+/// |ours - theirs| relative to the larger of |theirs| and a hundredth of the largest |theirs| of the group:
+/// some gradients are zero by symmetry, and their rounding errors are meaningless.
 inline void add_errors(Report& report, const std::vector<Pair>& group) {
   double largest = 0;
   for (const Pair& p : group) largest = std::max(largest, norm(p.theirs));
   for (const Pair& p : group) {
-    require(p.ours.size() == p.theirs.size(), p.name, ": ours has ", p.ours.size(), " numbers, the file ",
+    require(p.ours.size() == p.theirs.size(), p.name, ": ours has ", p.ours.size(), " values, the file ",
             p.theirs.size());
     std::vector<double> difference(p.ours.size());
     for (std::size_t i = 0; i < difference.size(); ++i) difference[i] = p.ours[i] - p.theirs[i];
@@ -66,7 +66,7 @@ class File {
     std::size_t n = 0;
     const auto [end, code] = std::from_chars(value.data(), value.data() + value.size(), n);
     require(code == std::errc() && end == value.data() + value.size(), where_, ": the metadata's \"", key,
-            "\" is \"", value, "\", expected a whole number");
+            "\" is \"", value, "\", expected an integer");
     return n;
   }
   std::vector<double> values(const std::string& name) const { return content_.at(name).as<double>(); }
@@ -109,7 +109,7 @@ inline void add_gradients(Pairs& pairs, const File& file, const std::vector<Name
   }
 }
 
-/// Scores, penalty and loss of any critic, and their gradients; the judges as critic_loss() takes them.
+/// Scores, penalty and loss of any critic, and their gradients; `judge` is passed to critic_loss().
 inline void add_critic(const File& file, const std::vector<NamedParameter>& parameters,
                        const CriticFn& critic_pairs, const CriticFn& judge, Pairs& outputs, Pairs& gradients) {
   const Context& context = parameters.front().value->context();

@@ -1,5 +1,5 @@
-// motiongan-golden FILE...: compares the models with files that PyTorch wrote; exits 1 when one is too far
-// off.
+// motiongan-golden FILE...: compares the models with files written by PyTorch; exits 1 if an error exceeds
+// the tolerance.
 #include <cstdio>
 
 #include "compare.hpp"

@@ -1,5 +1,4 @@
-// Outputs, the gradient penalty and every gradient against files that PyTorch wrote (see README.md beside
-// this file).
+// Outputs, gradient penalty and all gradients against files written by PyTorch (see README.md).
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -23,7 +22,7 @@ TEST_CASE("models agree with PyTorch") {
   CHECK(files >= 22);
 }
 
-TEST_CASE("a wrong number in a golden file is seen") {
+TEST_CASE("a wrong value in a golden file is detected") {
   io::SafeTensors file =
       io::SafeTensors::read(MOTIONGAN_SOURCE_DIR "/tests/golden/cnn_critic_dense_f64.safetensors");
   std::vector<double> bias = file.at("grad.encode.bias").as<double>();

@@ -1,4 +1,4 @@
-// The bones of motions: those that turn keep their lengths, position channels may not.
+// Bone-length error of motions: rotations keep lengths, position channels may not.
 #include "motiongan/metrics/bone_length_error.hpp"
 
 #include <doctest/doctest.h>
@@ -7,7 +7,7 @@ using namespace motiongan;
 
 namespace {
 
-/// A resting joint, the hips that travel, and a leg of two bones of 2 and 4.
+/// A static joint, moving hips, and a leg of two bones of lengths 2 and 4.
 motion::Motion walker() {
   motion::Motion m;
   m.skeleton.joints = {{"World", -1, {}, {}, {}},
@@ -25,11 +25,11 @@ motion::Motion walker() {
 
 }  // namespace
 
-TEST_CASE("joints that turn, and a root that travels below another one, stretch nothing") {
+TEST_CASE("rotations, and a moving root below a static joint, have no error") {
   CHECK(bone_length_error(walker()) < 1e-12);
 }
 
-TEST_CASE("a bone that is off in one frame of three, by hand") {
+TEST_CASE("one wrong bone in one frame of three, by hand") {
   motion::Motion m = walker();
   m.position(1, 3) = {0, -5, 0};  // 25% in one of 2 bones x 3 frames
   CHECK(bone_length_error(m) == doctest::Approx(25.0 / 6));
@@ -37,7 +37,7 @@ TEST_CASE("a bone that is off in one frame of three, by hand") {
   CHECK(bone_length_error(m) == doctest::Approx(75.0 / 6));
 }
 
-TEST_CASE("a skeleton without bones is refused") {
+TEST_CASE("a skeleton without bones is rejected") {
   motion::Motion m;
   m.skeleton.joints = {{"Hips", -1, {}, {}, {}}};
   m.rate = 10;

@@ -1,4 +1,4 @@
-// The drift of a long motion, second by second.
+// Drift of a long motion, second by second.
 #include "motiongan/metrics/drift.hpp"
 
 #include <doctest/doctest.h>
@@ -31,10 +31,10 @@ motion::MotionFormat two_dimensions(double rate, bool with_range = true) {
 
 }  // namespace
 
-TEST_CASE("mean, spread, speed and share outside, computed by hand") {
+TEST_CASE("mean, spread, speed and fraction outside, by hand") {
   DriftMeter meter(two_dimensions(4));
   meter.add(std::vector<float>{0.5f, 1, 0.5f, 1, 1.09f, 2.09f, -1.11f, -0.09f},
-            4);  // 1.1 and -0.1 are the ends
+            4);  // the range ends are 1.1 and -0.1
   meter.add(std::vector<float>{3, 4, 3, 4, 3, 4, 3, 4, 3, 1}, 5);
   const std::vector<DriftRow> rows = meter.rows();
   REQUIRE(rows.size() == 3);
@@ -59,7 +59,7 @@ TEST_CASE("mean, spread, speed and share outside, computed by hand") {
   CHECK(rows[2].outside == 0.5);
 }
 
-TEST_CASE("the pieces do not matter; seconds of a rate that is not whole") {
+TEST_CASE("results do not depend on the pieces; a fractional frame rate") {
   std::vector<float> poses;
   for (int f = 0; f < 1000; ++f) poses.insert(poses.end(), {float(std::sin(0.1 * f)), float(0.002 * f)});
   DriftMeter whole(two_dimensions(12.5));
@@ -84,7 +84,7 @@ TEST_CASE("the pieces do not matter; seconds of a rate that is not whole") {
              found[s].speed == rows[s].speed && found[s].outside == rows[s].outside));
   }
 
-  // The first and the last eight seconds: the second dimension has grown.
+  // First and last eight seconds: the second dimension has grown.
   const DriftSummary summary = whole.summary();
   CHECK(summary.seconds == 80);
   CHECK(summary.whole.frames == 1000);
@@ -98,7 +98,7 @@ TEST_CASE("the pieces do not matter; seconds of a rate that is not whole") {
   CHECK(summary.last.speed == doctest::Approx(summary.first.speed).epsilon(0.05));
 }
 
-TEST_CASE("a motion of one frame, none, an unknown range, and numbers that are none") {
+TEST_CASE("one frame, no frames, an unknown range, and NaN") {
   DriftMeter meter(two_dimensions(4, false));
   CHECK(meter.rows().empty());
   CHECK_THROWS_WITH_AS(meter.summary(), doctest::Contains("no frames were measured"), Error);

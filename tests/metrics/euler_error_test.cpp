@@ -1,4 +1,4 @@
-// The error of the motion-prediction papers: against numbers from numpy, and against their own on real data.
+// The motion-prediction papers' error, against numpy and against published values on real data.
 #include "motiongan/metrics/euler_error.hpp"
 
 #include <doctest/doctest.h>
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// 75 frames of truth and a prediction that knows the first 50 and then holds still; their errors after that.
+/// Errors after frame 50 of a prediction that repeats the 50th of 75 ground-truth frames.
 std::vector<double> zero_velocity(const std::vector<double>& rows, std::size_t width) {
   std::vector<double> held = rows;
   for (std::size_t f = 50; f < 75; ++f)
@@ -30,7 +30,7 @@ std::vector<double> zero_velocity(const std::vector<double>& rows, std::size_t w
   return errors;
 }
 
-/// The papers' draw: 8 starts among those that leave room for 75 of `frames` frames.
+/// The papers' draw: 8 start frames that leave room for 75 of `frames` frames.
 std::vector<std::size_t> draws(std::size_t frames) {
   std::mt19937 bits(1234567890);
   const auto most = static_cast<std::uint32_t>(frames - 75 - 1);
@@ -52,7 +52,7 @@ fs::path shared_data() {
   return {};
 }
 
-/// Every second row of a text, without place and rotation of the root, [frames, 111].
+/// Every second row of a text file, without the root's position and rotation, [frames, 111].
 std::vector<double> every_second_row(const fs::path& path) {
   const std::string text = motion::read_text(path, "text");
   std::vector<double> out;
@@ -76,11 +76,11 @@ void check_near(const Vec3& found, const Vec3& expected) {
 
 }  // namespace
 
-TEST_CASE("Euler angles of exponential maps, as numpy gives them") {
+TEST_CASE("Euler angles of exponential maps, compared with numpy") {
   check_near(prediction_euler(Vec3{.3, -.5, .7}), {-0.466206990629, 0.342361170104, -0.802038665255});
   check_near(prediction_euler(Vec3{0, 0, 0}), {0, 0, 0});
   check_near(prediction_euler(Vec3{2.5, .4, -1.1}), {-2.51717938454, 0.697079472319, 0.550810925932});
-  check_near(prediction_euler(Vec3{1e-5, 0, 0}), {-9.88219505483e-06, 0, 0});  // the eps in the axis shows
+  check_near(prediction_euler(Vec3{1e-5, 0, 0}), {-9.88219505483e-06, 0, 0});  // the epsilon shows
   check_near(prediction_euler(Vec3{-.2, 3.0, .1}), {3.06606072873, -0.128461867995, -3.00359584477});
   check_near(prediction_euler(Vec3{0, motion::pi / 2, 0}), {0, -1.57040673474, 0});
 }
@@ -91,7 +91,7 @@ TEST_CASE("Euler angles where R02 is 1 or -1") {
   check_near(prediction_euler(Mat3{0, 0, 1 + 1e-15, 0, 1, 0, -1, 0, 0}), {0, -motion::pi / 2, 0});
 }
 
-TEST_CASE("errors of frames, as numpy gives them; what the truth holds still does not count") {
+TEST_CASE("errors per frame, compared with numpy; constant ground-truth angles do not count") {
   std::vector<double> truth, prediction;
   for (int k = 0; k < 4; ++k) {
     truth.insert(truth.end(), {.1 * k, .2 * k * k, -.3, .5, .6, .7});
@@ -102,7 +102,7 @@ TEST_CASE("errors of frames, as numpy gives them; what the truth holds still doe
   REQUIRE(errors.size() == 4);
   for (std::size_t f = 0; f < 4; ++f) CHECK(std::abs(errors[f] - expected[f]) < 1e-10);
 
-  // The same as motions: the inverse rotations of two joints below a root that does not count.
+  // The same as motions: inverse rotations of two joints below an ignored root.
   Motion a, b;
   for (Motion* m : {&a, &b}) {
     m->skeleton.joints = {{"Hips", -1, {}, {}, {}}, {"Arm", 0, {}, {}, {}}, {"Hand", 1, {}, {}, {}}};
@@ -118,7 +118,7 @@ TEST_CASE("errors of frames, as numpy gives them; what the truth holds still doe
   }
   const std::vector<double> of_motions = euler_errors(a, b);
   for (std::size_t f = 0; f < 4; ++f) CHECK(std::abs(of_motions[f] - expected[f]) < 1e-6);
-  CHECK(euler_errors(a, b, 1)[1] == 0);  // the arm moves, and is left out
+  CHECK(euler_errors(a, b, 1)[1] == 0);  // the moving arm is the root here, and left out
 
   Motion other = b;
   other.rate = 30;
@@ -127,13 +127,13 @@ TEST_CASE("errors of frames, as numpy gives them; what the truth holds still doe
   CHECK_THROWS_WITH_AS(euler_errors(a, motion::slice(b, 0, 3)), doctest::Contains("4 frames of 3 joints"),
                        Error);
   CHECK_THROWS_WITH_AS(euler_errors(a, b, 3), doctest::Contains("root joint 3"), Error);
-  CHECK_THROWS_WITH_AS(euler_errors(truth, prediction, 5), doctest::Contains("24 numbers in 5 frames"),
+  CHECK_THROWS_WITH_AS(euler_errors(truth, prediction, 5), doctest::Contains("24 values in 5 frames"),
                        Error);
   CHECK_THROWS_WITH_AS(euler_errors(truth, std::span(prediction).first(6), 4),
-                       doctest::Contains("of the truth and 6"), Error);
+                       doctest::Contains("of the ground truth and 6"), Error);
 }
 
-TEST_CASE("holding still on the CMU texts gives the published protocol's errors") {
+TEST_CASE("zero velocity on the CMU texts gives the published errors") {
   const fs::path data = shared_data();
   if (data.empty()) return;
   const std::vector<std::size_t> shown{1, 3, 7, 9, 13, 24};
@@ -162,7 +162,7 @@ TEST_CASE("holding still on the CMU texts gives the published protocol's errors"
   CHECK(compared > 0);
 }
 
-TEST_CASE("a BVH file gives the errors of its text") {
+TEST_CASE("a BVH file gives the errors of its text file") {
   const fs::path data = shared_data();
   const fs::path text = data / "cmu-expmap" / "test" / "walking_extra" / "walking_10.txt";
   const fs::path bvh = data / "cmu" / "35" / "35_10.bvh";

@@ -1,4 +1,4 @@
-// The foot-skate ratio, against the published definition in numpy and cases that can be done by hand.
+// The foot-skate ratio, against the published definition in numpy and by hand.
 #include "motiongan/metrics/foot_skate.hpp"
 
 #include <doctest/doctest.h>
@@ -24,7 +24,7 @@ motion::Skeleton two_legs() {
   return s;
 }
 
-/// [frames, 7]; feet(f) gives the places of the left and right toe.
+/// Positions [frames, 7]; feet(f) returns the positions of the left and right toe.
 template <class F>
 std::vector<Vec3> positions(std::size_t frames, F&& feet) {
   std::vector<Vec3> out;
@@ -39,7 +39,7 @@ using Feet = std::pair<Vec3, Vec3>;
 
 }  // namespace
 
-TEST_CASE("sliding steps are those of the published definition (numpy, scipy's uniform_filter1d)") {
+TEST_CASE("sliding steps follow the published definition (numpy, scipy's uniform_filter1d)") {
   const auto all = positions(60, [](double t) {
     return Feet{
         {0.12 * std::sin(0.5 * t) + 0.02 * t, 0.04 + 0.04 * std::sin(0.37 * t), 0.05 * std::cos(0.8 * t)},
@@ -53,9 +53,9 @@ TEST_CASE("sliding steps are those of the published definition (numpy, scipy's u
   CHECK(at_20.contact == 42);
   CHECK(at_20.sliding == 32);
   CHECK(at_20.ratio() == doctest::Approx(32.0 / 59));
-  CHECK(foot_skate(two_legs(), all, 12, options).sliding == 16);  // and of 3
+  CHECK(foot_skate(two_legs(), all, 12, options).sliding == 16);  // a window of 3
 
-  // In centimetres, and with everything a metre up: the floor is found.
+  // In centimetres, and raised by a metre: the floor is found.
   std::vector<Vec3> moved = all;
   for (Vec3& p : moved) p = {100 * p[0], 100 * p[1] + 100, 100 * p[2]};
   options.unit_metres = 0.01;
@@ -63,7 +63,7 @@ TEST_CASE("sliding steps are those of the published definition (numpy, scipy's u
   CHECK(foot_skate(two_legs(), moved, 20, options).sliding == 32);
 }
 
-TEST_CASE("by hand: a foot that slides for ten steps of twenty at 1 m/s, while the other is up") {
+TEST_CASE("by hand: one foot slides for ten of twenty steps at 1 m/s, the other is raised") {
   const auto slide = [](double speed) {
     return positions(21, [speed](double f) {
       return Feet{{0, 0, std::min(f, 10.0) * speed / 20}, {f, 0.5, 0}};
@@ -71,14 +71,14 @@ TEST_CASE("by hand: a foot that slides for ten steps of twenty at 1 m/s, while t
   };
   FootSkateOptions options;
   options.unit_metres = 1;
-  // The mean over 5 steps is 3/5 and 4/5 of the speed in the first two and the last two of the ten.
+  // The mean over 5 steps is 3/5 and 4/5 of the speed in the first two and last two of the ten.
   CHECK(foot_skate(two_legs(), slide(1), 20, options).sliding == 10);
   CHECK(foot_skate(two_legs(), slide(1), 20, options).contact == 20);
   CHECK(foot_skate(two_legs(), slide(0.6), 20, options).sliding == 6);  // 0.36 and 0.48 m/s there
   CHECK(foot_skate(two_legs(), slide(0.45), 20, options).sliding == 0);
 }
 
-TEST_CASE("without a unit a leg is a metre") {
+TEST_CASE("with an unknown unit a leg is a metre") {
   const motion::Skeleton skeleton = two_legs();
   const std::vector<std::size_t> feet = find_feet(skeleton);
   CHECK(feet == std::vector<std::size_t>{3, 6});
@@ -109,7 +109,7 @@ TEST_CASE("feet by other names") {
   CHECK_THROWS_WITH_AS(find_feet(strange, wrong), doctest::Contains("no joint 'z'"), Error);
 }
 
-TEST_CASE("motions add up, and what cannot be measured is refused") {
+TEST_CASE("motions add up, and invalid input is rejected") {
   FootSkate sum{10, 2, 8};
   sum += {30, 8, 12};
   CHECK(sum.ratio() == doctest::Approx(0.25));

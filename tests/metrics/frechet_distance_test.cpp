@@ -1,4 +1,4 @@
-// The FID's distance, against numpy and cases that can be done by hand.
+// The Frechet distance, against numpy and by hand.
 #include "motiongan/metrics/frechet_distance.hpp"
 
 #include <doctest/doctest.h>
@@ -10,7 +10,7 @@ using namespace motiongan;
 
 namespace {
 
-/// [n, k]: sin(a i j + b i i) + 0.1 b j, counted from 1, as the independent program makes them.
+/// [n, k]: sin(a i j + b i i) + 0.1 b j, counted from 1, as in the numpy reference.
 std::vector<float> features(std::size_t n, std::size_t k, double a, double b) {
   std::vector<float> out;
   for (std::size_t i = 1; i <= n; ++i)
@@ -23,9 +23,10 @@ std::vector<float> features(std::size_t n, std::size_t k, double a, double b) {
 
 }  // namespace
 
-// Made with numpy 1.24: trace of the root by eigh(S1)^(1/2) and eigvalsh of S1^(1/2) S2 S1^(1/2); scipy's
-// sqrtm of S1 S2 gives the same, to 1e-12 for full rank and 1e-7 where a covariance is singular.
-TEST_CASE("distances are numpy's, with enough samples and with too few") {
+// Reference values from numpy 1.24: trace of the square root by eigh(S1)^(1/2) and eigvalsh of S1^(1/2) S2
+// S1^(1/2); scipy's sqrtm of S1 S2 gives the same, to 1e-12 for full rank and 1e-7 where a covariance is
+// singular.
+TEST_CASE("distances equal numpy's, with enough samples and with too few") {
   SUBCASE("more samples than dimensions") {
     const FrechetDistance d = frechet_distance(features(60, 6, 1, 0.3), features(50, 6, 0.7, 0.5), 6);
     CHECK(d.distance == doctest::Approx(0.14845276939860064).epsilon(1e-6));
@@ -34,7 +35,7 @@ TEST_CASE("distances are numpy's, with enough samples and with too few") {
     CHECK(d.samples1 == 60);
     CHECK(d.samples2 == 50);
   }
-  SUBCASE("fewer in both sets, and in one, either way round") {
+  SUBCASE("fewer in both sets, and in one of them, in either order") {
     const auto few = features(9, 20, 1, 0.3), some = features(12, 20, 0.7, 0.5),
                many = features(70, 20, 0.7, 0.5);
     const FrechetDistance d = frechet_distance(few, some, 20);
@@ -46,8 +47,8 @@ TEST_CASE("distances are numpy's, with enough samples and with too few") {
   }
 }
 
-TEST_CASE("distances that are known") {
-  SUBCASE("a set from itself, whatever its rank") {
+TEST_CASE("known distances") {
+  SUBCASE("a set and itself, at any rank") {
     for (const std::size_t n : {5u, 40u}) {
       const auto set = features(n, 12, 1, 0.3);
       CHECK(frechet_distance(set, set, 12).distance < 1e-6);
@@ -58,7 +59,7 @@ TEST_CASE("distances that are known") {
     const std::vector<float> one{1, 2, 3}, two{4, 7, 10};
     CHECK(frechet_distance(one, two, 1).distance == doctest::Approx(25 + 4));
   }
-  SUBCASE("moved sets, and sets that do not vary, differ by their means") {
+  SUBCASE("translated sets and constant sets differ by their means") {
     auto set = features(40, 3, 1, 0.3);
     const auto before = set;
     for (std::size_t i = 0; i < set.size(); i += 3) set[i] += 2;
@@ -66,17 +67,17 @@ TEST_CASE("distances that are known") {
     const std::vector<float> still{1, 5, 1, 5}, there{1, 8, 1, 8};
     CHECK(frechet_distance(still, there, 2).distance == doctest::Approx(9));
   }
-  SUBCASE("directions that do not overlap: the traces add up") {
+  SUBCASE("orthogonal directions: the traces add up") {
     const std::vector<float> along_x{-1, 0, 1, 0}, along_y{0, -2, 0, 2};  // variances 2 and 8
     CHECK(frechet_distance(along_x, along_y, 2).distance == doctest::Approx(10));
   }
 }
 
-TEST_CASE("sets that cannot be compared are refused") {
+TEST_CASE("sets that cannot be compared are rejected") {
   const std::vector<float> set{1, 2, 3, 4}, one{1, 2}, odd{1, 2, 3}, wrong{1, NAN, 2, 3};
   CHECK_THROWS_WITH_AS(frechet_distance(set, one, 2), doctest::Contains("the second set has 1 samples"),
                        Error);
-  CHECK_THROWS_WITH_AS(frechet_distance(odd, set, 2), doctest::Contains("the first set has 3 numbers"),
+  CHECK_THROWS_WITH_AS(frechet_distance(odd, set, 2), doctest::Contains("the first set has 3 values"),
                        Error);
   CHECK_THROWS_WITH_AS(frechet_distance(wrong, set, 2), doctest::Contains("finite"), Error);
 }

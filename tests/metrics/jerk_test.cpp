@@ -1,4 +1,4 @@
-// Jerk, against curves whose third derivative is known and numpy's differences.
+// Jerk, against curves with known third derivatives and numpy's differences.
 #include "motiongan/metrics/jerk.hpp"
 
 #include <doctest/doctest.h>
@@ -9,7 +9,7 @@
 using namespace motiongan;
 using motion::Vec3;
 
-TEST_CASE("t^3 has a third derivative of 6; what accelerates evenly has none") {
+TEST_CASE("t^3 has a third derivative of 6, constant acceleration one of 0") {
   std::vector<Vec3> cubic, square;
   for (int f = 0; f < 10; ++f) {
     const double t = f / 20.0;
@@ -21,7 +21,7 @@ TEST_CASE("t^3 has a third derivative of 6; what accelerates evenly has none") {
   CHECK(mean_jerk(square, 1, 20) < 1e-9);
 }
 
-TEST_CASE("two joints, as numpy.diff(n=3) has them") {
+TEST_CASE("two joints, compared with numpy.diff(n=3)") {
   std::vector<Vec3> positions;
   for (int f = 0; f < 20; ++f)
     for (int j = 0; j < 2; ++j)
@@ -29,13 +29,13 @@ TEST_CASE("two joints, as numpy.diff(n=3) has them") {
   CHECK(mean_jerk(positions, 2, 30) == doctest::Approx(2834.275406467364).epsilon(1e-9));
 }
 
-TEST_CASE("a motion's joints are where forward kinematics puts them") {
+TEST_CASE("a motion is measured by forward kinematics") {
   motion::Motion motion;
   motion.skeleton.joints = {{"Hips", -1, {}, {}, {}}, {"Knee", 0, {0, -2, 0}, {}, {}}};
   motion.rate = 10;
   motion.frames = 8;
   for (int f = 0; f < 8; ++f) {
-    const double angle = 0.3 * f;  // the knee goes round the hips; these stand
+    const double angle = 0.3 * f;  // the knee circles the hips, which stay put
     motion.rotations.push_back(motion::axis_rotation(2, angle));
     motion.rotations.emplace_back();
     motion.positions.push_back({});
@@ -46,7 +46,7 @@ TEST_CASE("a motion's joints are where forward kinematics puts them") {
   CHECK(mean_jerk(motion) == doctest::Approx(knee / 2).epsilon(1e-9));
 }
 
-TEST_CASE("too few frames and sizes that do not fit are refused") {
+TEST_CASE("too few frames and wrong sizes are rejected") {
   const std::vector<Vec3> six(6);
   CHECK_THROWS_WITH_AS(mean_jerk(six, 2, 30), doctest::Contains("found 3 frames"), Error);
   CHECK_THROWS_WITH_AS(mean_jerk(six, 4, 30), doctest::Contains("whole frames of 4"), Error);

@@ -26,7 +26,7 @@ motion::Skeleton skeleton(const std::vector<int>& parents, const std::vector<Vec
 TEST_CASE("a straight arm is 0, a right angle 90, folded back 180") {
   const motion::Skeleton arm = skeleton({-1, 0, 1}, {{0, 0, 0}, {2, 0, 0}, {1, 0, 0}});
   const std::vector<Vec3> positions{{1, 1, 1}, {3, 1, 1}, {4, 1, 1},   // straight
-                                    {1, 1, 1}, {3, 1, 1}, {3, 1, 7},   // right angle, a wrong length
+                                    {1, 1, 1}, {3, 1, 1}, {3, 1, 7},   // right angle, another length
                                     {0, 0, 0}, {0, 2, 0}, {0, 1, 0},   // folded back
                                     {0, 0, 0}, {0, 2, 0}, {0, 2, 0}};  // no second bone
   const std::vector<double> angles = mean_joint_angle(arm, positions);
@@ -35,15 +35,15 @@ TEST_CASE("a straight arm is 0, a right angle 90, folded back 180") {
   CHECK(angles[1] == doctest::Approx(90));
   CHECK(angles[2] == doctest::Approx(180));
   CHECK(angles[3] == 0);
-  // A millionth of a degree is not lost, as it is in an arc cosine.
+  // A millionth of a degree is preserved; an arc cosine would lose it.
   const double tiny = motion::radians(1e-6);
   CHECK(mean_joint_angle(
             arm, std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1 + std::cos(tiny), std::sin(tiny), 0}})[0] ==
         doctest::Approx(1e-6));
 }
 
-TEST_CASE("bones of zero rest length are passed through, several bones are averaged") {
-  // 0 -> 1, then 2 at the place of 1, from which 3 goes on; 1 -> 4 straight on.
+TEST_CASE("bones of zero rest length are skipped, several bones are averaged") {
+  // 0 -> 1 -> 2 with 2 at the position of 1, then 2 -> 3; 1 -> 4 is straight.
   const motion::Skeleton s =
       skeleton({-1, 0, 1, 2, 1}, {{0, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
   const std::vector<BonePair> pairs = adjacent_bones(s);
@@ -54,7 +54,7 @@ TEST_CASE("bones of zero rest length are passed through, several bones are avera
   CHECK(mean_joint_angle(s, pose)[0] == doctest::Approx(45));
 }
 
-TEST_CASE("turning and moving the body changes no angle") {
+TEST_CASE("rotating and translating the body changes no angle") {
   const motion::LabelledMotion l = motion::procedural_motion(1, {.seconds = 1});
   std::vector<Vec3> positions = motion::joint_positions(l.motion);
   const std::vector<double> before = mean_joint_angle(l.motion.skeleton, positions);
@@ -66,7 +66,7 @@ TEST_CASE("turning and moving the body changes no angle") {
   CHECK(before[0] > 5);
 }
 
-TEST_CASE("what has no angle is refused") {
+TEST_CASE("input without angles is rejected") {
   CHECK_THROWS_AS(mean_joint_angle(skeleton({-1, 0}, {{0, 0, 0}, {1, 0, 0}}), std::vector<Vec3>(2)), Error);
   CHECK_THROWS_AS(mean_joint_angle({}, {}), Error);
   const motion::Skeleton arm = skeleton({-1, 0, 1}, {{0, 0, 0}, {2, 0, 0}, {1, 0, 0}});

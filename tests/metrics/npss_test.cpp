@@ -1,4 +1,4 @@
-// NPSS, against numpy and cases that can be done by hand.
+// NPSS, against numpy and by hand.
 #include "motiongan/metrics/npss.hpp"
 
 #include <doctest/doctest.h>
@@ -23,7 +23,7 @@ std::vector<double> sequence(F&& f) {
 
 }  // namespace
 
-TEST_CASE("two sequences of four dimensions, as numpy.fft has them") {
+TEST_CASE("two sequences of four dimensions, compared with numpy.fft") {
   const auto truth1 = sequence([](int t, int d) { return std::sin(0.4 * t * (d + 1)) + 0.1 * d; });
   const auto truth2 = sequence([](int t, int d) { return std::cos(0.3 * t * (d + 1)) * (d + 1); });
   const auto made1 = sequence([](int t, int d) { return std::sin(0.5 * t * (d + 1)) + 0.2 * d; });
@@ -42,24 +42,24 @@ TEST_CASE("two sequences of four dimensions, as numpy.fft has them") {
 }
 
 TEST_CASE("by hand: all power moves from frequency 0 to frequency 1") {
-  // Of four frames, 1 1 1 1 has its power at 0; 1 0 -1 0 half at 1 and half at 3. Cumulative: 1 1 1 1 and
-  // 0 1/2 1/2 1: apart by 1 + 1/2 + 1/2 + 0.
+  // 1 1 1 1 has all its power at 0; 1 0 -1 0 has half at 1 and half at 3. Cumulative: 1 1 1 1 and
+  // 0 1/2 1/2 1, with a distance of 1 + 1/2 + 1/2 + 0.
   const std::vector<double> flat{1, 1, 1, 1}, wave{1, 0, -1, 0};
   Npss one, weighted;
   one.add(flat, wave, 4);
   CHECK(one.value() == doctest::Approx(2));
-  // Beside it a dimension that is right, of nine times the power; and one that does not move has no weight.
+  // Add a correct dimension of nine times the power, and a constant zero one, which has no weight.
   const std::vector<double> truth{1, 3, 0, 1, 3, 0, 1, 3, 0, 1, 3, 0},
       made{1, 3, 5, 0, 3, 4, -1, 3, 3, 0, 3, 2};
   weighted.add(truth, made, 4);
   CHECK(weighted.value() == doctest::Approx(2.0 / 10));
-  // A louder copy has the same spectrum.
+  // A scaled copy has the same normalised spectrum.
   Npss louder;
   louder.add(wave, std::vector<double>{5, 0, -5, 0}, 4);
   CHECK(louder.value() < 1e-12);
 }
 
-TEST_CASE("angles of a motion are those of the prediction papers, without the root") {
+TEST_CASE("angles of a motion follow the prediction papers, without the root") {
   motion::Motion m;
   m.skeleton.joints = {{"Hips", -1, {}, {}, {}}, {"Knee", 0, {0, -2, 0}, {}, {}}};
   m.rate = 10;
@@ -75,7 +75,7 @@ TEST_CASE("angles of a motion are those of the prediction papers, without the ro
   for (const std::size_t i : {1u, 2u, 4u, 5u}) CHECK(std::abs(angles[i]) < 1e-9);
 }
 
-TEST_CASE("sequences that do not fit are refused") {
+TEST_CASE("sequences that do not fit are rejected") {
   Npss npss;
   const std::vector<double> four(4), three(3);
   CHECK_THROWS_WITH_AS(npss.value(), doctest::Contains("no sequence was added"), Error);

@@ -1,4 +1,4 @@
-// Stretched bones, seams and ways, by hand and on the built-in motion.
+// Bone lengths, seams and distances, by hand and on procedural motion.
 #include "motiongan/metrics/position_metrics.hpp"
 
 #include <doctest/doctest.h>
@@ -28,9 +28,9 @@ motion::Skeleton chain() {
 
 }  // namespace
 
-TEST_CASE("bone length error in percent, of the rest pose or of a frame") {
+TEST_CASE("bone-length error in percent, relative to the rest pose or a frame") {
   const std::vector<Vec3> positions{{0, 0, 0}, {2, 0, 0}, {2, 0, 0}, {2, 4, 0},   // as at rest
-                                    {0, 0, 0}, {0, 3, 0}, {0, 3, 0}, {0, 3, 3}};  // 50% and 25% off
+                                    {0, 0, 0}, {0, 3, 0}, {0, 3, 0}, {0, 3, 3}};  // errors of 50% and 25%
   CHECK(bone_length_error(chain(), positions) == doctest::Approx((0 + 0 + 50 + 25) / 4.0));
   const std::vector<Vec3> reference{{1, 1, 1}, {1, 2, 1}, {1, 2, 1}, {1, 5, 1}};  // lengths 1 and 3
   CHECK(bone_length_error(chain(), positions, reference) == doctest::Approx((100 + 100 / 3.0 + 200 + 0) / 4));
@@ -43,7 +43,7 @@ TEST_CASE("bone length error in percent, of the rest pose or of a frame") {
   CHECK_THROWS_AS(bone_length_error(point, std::vector<Vec3>(2)), Error);
 }
 
-TEST_CASE("the step from frame to frame, with the root's own step and without") {
+TEST_CASE("steps between frames, with and without the root's step") {
   const std::vector<Vec3> a{{0, 0, 0}, {1, 0, 0}}, b{{3, 0, 0}, {4, 0, 4}};
   const FrameStep step = seam_jump(a, b);
   CHECK(step.world == doctest::Approx((3 + 5) / 2.0));
@@ -51,7 +51,7 @@ TEST_CASE("the step from frame to frame, with the root's own step and without") 
   CHECK(seam_jump(a, b, 0.01).world == doctest::Approx(0.04));
   CHECK_THROWS_AS(seam_jump(a, std::vector<Vec3>(3)), Error);
 
-  // The root goes 1, 10, 2, and the other joint swings against it by 5, 0, 7.
+  // The root moves by 1, 10, 2, the other joint relative to it by 5, 0, 7.
   const std::vector<Vec3> walk{{0, 0, 0},  {0, 0, 0},  {1, 0, 0},  {1, 5, 0},
                                {11, 0, 0}, {11, 5, 0}, {13, 0, 0}, {13, 12, 0}};
   CHECK(median_step(walk, 2).body == doctest::Approx(2.5));
@@ -61,7 +61,7 @@ TEST_CASE("the step from frame to frame, with the root's own step and without") 
   CHECK_THROWS_AS(median_step(walk, 3), Error);
 }
 
-TEST_CASE("ways over the ground") {
+TEST_CASE("distances over the ground") {
   const std::vector<Vec3> square{{0, 5, 0}, {9, 9, 9}, {3, 0, 0}, {9, 9, 9}, {3, 7, 4}, {9, 9, 9}};
   const Distance d = distance_travelled(square, 2);
   CHECK(d.path == doctest::Approx(7));
@@ -71,7 +71,7 @@ TEST_CASE("ways over the ground") {
   CHECK_THROWS_AS(distance_travelled(square, 4), Error);
 }
 
-TEST_CASE("the built-in walk keeps its bones and gets somewhere") {
+TEST_CASE("the procedural walk keeps its bone lengths and travels") {
   const motion::LabelledMotion l = motion::procedural_motion(0, {.seconds = 4});
   const std::vector<Vec3> positions = motion::joint_positions(l.motion);
   const std::size_t joints = l.motion.skeleton.size();

@@ -1,4 +1,4 @@
-// Statistics against numbers worked out by hand: a hinge that turns evenly, one that swings like a sine.
+// Motion statistics, by hand: a hinge that rotates uniformly, and one that swings sinusoidally.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ using namespace motiongan::motion;
 
 namespace {
 
-/// Root and an arm of length 2 with a hand of length 1 at its end; the arm turns about z by angle(f) degrees.
+/// A root and an arm of length 2 with a hand of length 1; the arm rotates about z by angle(f) degrees.
 template <class Angle>
 Motion hinge(std::size_t frames, double rate, const Angle& angle, double root_step = 0, double height = 5) {
   Motion m;
@@ -34,7 +34,7 @@ Motion hinge(std::size_t frames, double rate, const Angle& angle, double root_st
 
 }  // namespace
 
-TEST_CASE("an evenly turning joint: mean, spread, range, speed, travel, lowest point") {
+TEST_CASE("a uniformly rotating joint: mean, spread, range, speed, root speed, lowest point") {
   // Angles 0, 10, 20, 30 degrees at 10 Hz: mean 15, spread sqrt(125), speed 100 deg/s.
   const std::vector<Motion> clips{hinge(
       4, 10, [](double f) { return -10 * f; }, 0.3)};
@@ -65,7 +65,7 @@ TEST_CASE("an evenly turning joint: mean, spread, range, speed, travel, lowest p
   CHECK(s.mean_low == doctest::Approx(5 - sines / 4));
 }
 
-TEST_CASE("the 95th percentile lies between neighbours, and clips are pooled") {
+TEST_CASE("the 95th percentile is interpolated, and clips are pooled") {
   CHECK(percentile({}, 0.5) == 0);
   CHECK(percentile({4}, 0.95) == 4);
   CHECK(percentile({3, 1, 2}, 0.5) == doctest::Approx(2));
@@ -80,7 +80,7 @@ TEST_CASE("the 95th percentile lies between neighbours, and clips are pooled") {
   CHECK(s.joints[1].mean[2] == doctest::Approx((0 + 2 + 4 + 6 + 0 + 6 + 12 + 18) / 8.0));
 }
 
-TEST_CASE("the mean frequency of a sine is its own, of two sines their power-weighted mean") {
+TEST_CASE("mean frequency: of a sine its own, of two sines their power-weighted mean") {
   const double rate = 20;
   const auto sine = [rate](double hz, double degrees_) {
     return [=](double f) { return degrees_ * std::sin(2 * pi * hz * f / rate); };
@@ -89,15 +89,15 @@ TEST_CASE("the mean frequency of a sine is its own, of two sines their power-wei
   // Amplitudes 20 and 10 have powers 4 and 1: (4 * 1 + 1 * 6) / 5.
   const auto both = [&](double f) { return sine(1, 20)(f) + sine(6, 10)(f); };
   CHECK(measure(std::vector<Motion>{hinge(80, rate, both)}).frequency == doctest::Approx(2.0));
-  // At half the rate a cosine is +1, -1, +1, ...
+  // At the Nyquist frequency a cosine is +1, -1, +1, ...
   const auto fastest = [](double f) { return 5 * std::cos(pi * f); };
   CHECK(measure(std::vector<Motion>{hinge(8, rate, fastest)}).frequency == doctest::Approx(10));
-  // A long clip is cut in pieces: 1024 frames at 1.25 Hz are two times 32 periods.
+  // A long clip is split into pieces: 1024 frames at 1.25 Hz are twice 32 periods.
   CHECK(measure(std::vector<Motion>{hinge(1024, rate, sine(1.25, 9))}).frequency == doctest::Approx(1.25));
   CHECK(measure(std::vector<Motion>{hinge(8, rate, [](double) { return 3.0; })}).frequency == 0);
 }
 
-TEST_CASE("a comparison of a set with itself: ratios 1, nothing outside") {
+TEST_CASE("a set compared with itself: ratios 1, nothing outside") {
   const std::vector<Motion> clips{hinge(
       40, 10, [](double f) { return 30 * std::sin(f / 5); }, 0.1)};
   const MotionStatistics s = measure(clips);
@@ -107,12 +107,12 @@ TEST_CASE("a comparison of a set with itself: ratios 1, nothing outside") {
   CHECK(c.values_outside == 0);
   CHECK(c.frames_outside == 0);
   CHECK(c.joints[1].mean_difference == doctest::Approx(0));
-  CHECK(std::isnan(c.joints[0].spread_ratio));  // the root does not turn
+  CHECK(std::isnan(c.joints[0].spread_ratio));  // the root does not rotate
   CHECK(c.generated.poses.empty());
 }
 
-TEST_CASE("1.8 times the swing and speed, and the frames outside the real range") {
-  // Real: 0, 10 .. 90 degrees. Generated: 0, 18 .. 162, of which four are above 90.
+TEST_CASE("1.8 times the amplitude and speed, and frames outside the real range") {
+  // Real: 0, 10 .. 90 degrees. Generated: 0, 18 .. 162, four of them above 90.
   const MotionStatistics real = measure(std::vector<Motion>{hinge(10, 10, [](double f) { return 10 * f; })});
   const MotionStatistics made = measure(std::vector<Motion>{hinge(10, 10, [](double f) { return 18 * f; })});
   const StatisticsComparison c = compare(made, real, 0);
@@ -123,10 +123,10 @@ TEST_CASE("1.8 times the swing and speed, and the frames outside the real range"
   CHECK(c.joints[1].mean_difference == doctest::Approx(0.8 * 45));
   CHECK(c.joints[1].outside == doctest::Approx(0.4));  // 90 is inside
   CHECK(c.frames_outside == doctest::Approx(0.4));
-  CHECK(c.values_outside == doctest::Approx(4.0 / 60));  // 10 frames of 2 joints of 3 numbers
+  CHECK(c.values_outside == doctest::Approx(4.0 / 60));  // 10 frames x 2 joints x 3 values
   // 25% of 90 degrees is 22.5: 108 is now inside.
   CHECK(compare(made, real, 0.25).joints[1].outside == doctest::Approx(0.3));
-  // A range of nothing is still half a degree wide at either end.
+  // An empty range is still widened by half a degree at each end.
   const MotionStatistics still = measure(std::vector<Motion>{hinge(5, 10, [](double) { return 0.0; })});
   const auto turned = [](double angle) {
     return measure(std::vector<Motion>{hinge(5, 10, [angle](double) { return angle; })});
@@ -136,7 +136,7 @@ TEST_CASE("1.8 times the swing and speed, and the frames outside the real range"
   CHECK(std::isnan(compare(still, still).median_spread_ratio));
 }
 
-TEST_CASE("the table has one line per joint, columns aligned; the CSV as many fields in every line") {
+TEST_CASE("the table has aligned columns and one line per joint, the CSV equal numbers of fields") {
   const MotionStatistics real = measure(std::vector<Motion>{hinge(10, 10, [](double f) { return 10 * f; })});
   const MotionStatistics made = measure(std::vector<Motion>{hinge(10, 10, [](double f) { return 18 * f; })});
   const StatisticsComparison c = compare(made, real);
@@ -172,7 +172,7 @@ TEST_CASE("the table has one line per joint, columns aligned; the CSV as many fi
   CHECK(csv.find("nan") == std::string::npos);
 }
 
-TEST_CASE("what cannot be measured or compared is named") {
+TEST_CASE("sets that cannot be measured or compared are rejected") {
   const auto flat = [](double) { return 0.0; };
   CHECK_THROWS_WITH_AS(measure({}), doctest::Contains("at least one clip"), Error);
   CHECK_THROWS_WITH_AS(measure(std::vector<Motion>{hinge(1, 10, flat)}), doctest::Contains("at least 2"),

@@ -1,4 +1,4 @@
-// Eigenvalues of symmetric matrices, against numpy's and known ones.
+// Eigenvalues of symmetric matrices, against numpy and known values.
 #include "motiongan/metrics/symmetric_eigenvalues.hpp"
 
 #include <doctest/doctest.h>
@@ -9,7 +9,7 @@
 
 using namespace motiongan;
 
-TEST_CASE("eigenvalues are numpy's (numpy.linalg.eigvalsh 1.24)") {
+TEST_CASE("eigenvalues equal numpy's (numpy.linalg.eigvalsh 1.24)") {
   constexpr std::size_t n = 12;
   std::vector<double> a(n * n);
   for (std::size_t i = 0; i < n; ++i)
@@ -22,8 +22,8 @@ TEST_CASE("eigenvalues are numpy's (numpy.linalg.eigvalsh 1.24)") {
   for (std::size_t i = 0; i < n; ++i) CHECK(found[i] == doctest::Approx(expected[i]).epsilon(1e-10));
 }
 
-TEST_CASE("matrices whose eigenvalues are known") {
-  SUBCASE("the second difference: 2 - 2 cos(pi i / (n + 1))") {
+TEST_CASE("matrices with known eigenvalues") {
+  SUBCASE("the second-difference matrix: 2 - 2 cos(pi i / (n + 1))") {
     constexpr std::size_t n = 101;
     std::vector<double> a(n * n, 0);
     for (std::size_t i = 0; i < n; ++i) {
@@ -35,7 +35,7 @@ TEST_CASE("matrices whose eigenvalues are known") {
       CHECK(std::abs(found[i] - (2 - 2 * std::cos(std::numbers::pi * static_cast<double>(i + 1) / (n + 1)))) <
             1e-12);
   }
-  SUBCASE("equal ones, zeros, and a size of one") {
+  SUBCASE("repeated eigenvalues, zeros, and size one") {
     CHECK(symmetric_eigenvalues({-7}, 1) == std::vector<double>{-7});
     CHECK(symmetric_eigenvalues(std::vector<double>(25, 0), 5) == std::vector<double>(5, 0));
     const std::vector<double> ones = symmetric_eigenvalues(std::vector<double>(36, 1), 6);  // rank one
@@ -44,7 +44,7 @@ TEST_CASE("matrices whose eigenvalues are known") {
   }
 }
 
-TEST_CASE("what is no symmetric matrix is refused") {
-  CHECK_THROWS_WITH_AS(symmetric_eigenvalues({1, 2, 3}, 2), doctest::Contains("found 3 numbers"), Error);
+TEST_CASE("invalid matrices are rejected") {
+  CHECK_THROWS_WITH_AS(symmetric_eigenvalues({1, 2, 3}, 2), doctest::Contains("found 3 values"), Error);
   CHECK_THROWS_WITH_AS(symmetric_eigenvalues({1, NAN, NAN, 3}, 2), doctest::Contains("finite"), Error);
 }

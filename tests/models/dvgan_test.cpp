@@ -175,7 +175,7 @@ TEST_CASE("sizes that cannot be are refused") {
   CHECK(says(text, "33"));
   CHECK(says(text, "32 and 64"));
   CHECK(says(message_of([] { made({.hidden = 0}); }), "must be positive"));
-  CHECK(says(message_of([] { made({.hidden = 8, .taps = 4}); }), "4 taps"));
+  CHECK(says(message_of([] { made({.hidden = 8, .taps = 4}); }), "taps is 4"));
 }
 
 TEST_CASE("files that are not this model are refused by name, with what is wrong") {

@@ -1,4 +1,4 @@
-// The networks of the second paper: their parameters by name, their derivatives, their options.
+// The attention networks: parameter names, derivatives, options.
 #include <doctest/doctest.h>
 
 #include <motiongan/nn/state_dict.hpp>
@@ -27,7 +27,7 @@ Var some_classes() {
   return Var::constant(one_hot(double_context(), labels, classes));
 }
 
-/// Opens the attention of a model: gamma is 0 at the start, where most derivatives vanish.
+/// Sets gamma of the attention to a non-zero value: it starts at 0, where most derivatives vanish.
 template <class Model>
 void open(Model& model) {
   for (const NamedParameter& p : named_parameters(model))
@@ -46,7 +46,7 @@ std::vector<std::string> listed(Model model) {
   return lines;
 }
 
-/// Worst error of the derivatives by input and parameters, up to `order`.
+/// Worst error of the derivatives with respect to input and parameters, up to `order`.
 template <class Model, class Call>
 double worst(Model model, const Input& x, int order, Call&& call) {
   open(model);
@@ -75,7 +75,7 @@ AttentionCritic make_critic(std::size_t told = 0, bool attention = true) {
 
 }  // namespace
 
-TEST_CASE("parameters by name and shape") {
+TEST_CASE("parameter names and shapes") {
   const std::vector<std::string> attention{"attention.query.weight [1, 8, 1]",
                                            "attention.query.bias [1]",
                                            "attention.key.weight [1, 8, 1]",
@@ -111,7 +111,7 @@ TEST_CASE("parameters by name and shape") {
                             {.dof = dof, .classes = classes, .hidden = k})) == lstm);
 }
 
-TEST_CASE("derivatives of the networks, by input and parameters") {
+TEST_CASE("derivatives of the networks with respect to input and parameters") {
   CHECK(worst(make_generator(2), randn({5, batch, dof}), 1, [&](const auto& m, const Var& x) {
           return m(x, some_classes(), reshape(random(1, 2), {batch, 2}));
         }) < 1e-6);
@@ -123,8 +123,8 @@ TEST_CASE("derivatives of the networks, by input and parameters") {
               [&](const auto& m, const Var& x) { return m(x, some_classes(), 4); }) < 1e-6);
 }
 
-TEST_CASE("the gradient penalty through attention is differentiated right") {
-  // Every parameter's gradient of the penalty, which holds second derivatives, against differences.
+TEST_CASE("the gradient penalty through attention has the right gradient") {
+  // The penalty's gradient for every parameter involves second derivatives; compared with finite differences.
   for (const std::size_t told : {std::size_t{0}, classes}) {
     CAPTURE(told);
     CHECK(worst(make_critic(told), randn({7, batch, dof}), 1, [&](const auto& m, const Var& x) {
@@ -133,7 +133,7 @@ TEST_CASE("the gradient penalty through attention is differentiated right") {
   }
 }
 
-TEST_CASE("the class, the noise and what was before change what is made") {
+TEST_CASE("the output depends on class, noise and prior") {
   AttentionGenerator model = make_generator(2);
   open(model);
   const Var x = random(6, dof), a = some_classes(), n = reshape(random(1, 2, 7), {batch, 2});
@@ -147,7 +147,7 @@ TEST_CASE("the class, the noise and what was before change what is made") {
   CHECK(made(x, a, n) != made(2.0 * x, a, n));
 }
 
-TEST_CASE("the baseline fed step by step with its own output") {
+TEST_CASE("the baseline in one call equals feeding its own output back step by step") {
   LstmBaseline model(Initializer(double_context(), 6), {.dof = dof, .classes = classes, .hidden = 4});
   const Var prior = random(4, dof);
   const std::vector<double> at_once = model(prior, some_classes(), 3).value().to_host<double>();
@@ -162,7 +162,7 @@ TEST_CASE("the baseline fed step by step with its own output") {
     CHECK(at_once[i] == doctest::Approx(step_by_step[i]).epsilon(1e-12));
 }
 
-TEST_CASE("attention maps can be read, where there is attention") {
+TEST_CASE("attention maps, and the error without attention") {
   const Var x = random(6, dof);
   const Var map = make_generator().attention_map(x, some_classes());
   CHECK(map.shape() == Shape{batch, 6, 6});
@@ -173,11 +173,11 @@ TEST_CASE("attention maps can be read, where there is attention") {
   CHECK(says(message_of([&] { make_critic(0, false).attention_map(x); }), "without attention"));
 }
 
-TEST_CASE("what does not fit is refused") {
+TEST_CASE("inputs of the wrong shape are rejected") {
   const Var x = random(6, dof);
   CHECK(says(message_of([&] { make_generator()(random(6, 4), some_classes()); }),
-             "AttentionGenerator: a prior [6, 2, 4] and classes [2, 2]"));
-  CHECK(says(message_of([&] { make_generator(2)(x, some_classes()); }), "noise of 0 numbers, expected 2"));
+             "AttentionGenerator: prior [6, 2, 4] and classes [2, 2]"));
+  CHECK(says(message_of([&] { make_generator(2)(x, some_classes()); }), "noise of 0 values, expected 2"));
   CHECK(says(message_of([&] { make_critic()(random(3, dof)); }), "expected [4 or more frames"));
   CHECK(says(message_of([&] { make_critic()(x, some_classes()); }), "2 classes, expected 0"));
   CHECK(says(message_of([&] { make_critic(2)(x); }), "0 classes, expected 2"));

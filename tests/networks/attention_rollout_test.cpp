@@ -1,4 +1,4 @@
-// The attention generator second after second without a graph: the same as with one, whoever stands beside.
+// AttentionRollout against AttentionGenerator: same motion, independent of the rest of the batch.
 #include <doctest/doctest.h>
 
 #include <motiongan/networks/attention_rollout.hpp>
@@ -17,7 +17,7 @@ const Context& context(Precision precision) {
 
 constexpr std::size_t classes = 3;
 
-/// A generator whose attention is open.
+/// A generator with non-zero gamma.
 AttentionGenerator generator(const Context& c, const AttentionGeneratorOptions& options) {
   AttentionGenerator made(Initializer(c, 3), options);
   for (const NamedParameter& p : named_parameters(made))
@@ -29,7 +29,7 @@ Tensor prior(const Context& c, std::size_t frames, std::size_t batch, std::size_
   return random_normal(c, {.seed = 5}, frames, batch, dof);
 }
 
-/// One-hot [batch, classes]; sample b is of class (b + first) % classes.
+/// One-hot [batch, classes]; sample b has class (b + first) % classes.
 Tensor one_hot(const Context& c, std::size_t batch, std::size_t first = 0) {
   std::vector<float> rows(batch * classes, 0);
   for (std::size_t b = 0; b < batch; ++b) rows[b * classes + (b + first) % classes] = 1;
@@ -52,7 +52,7 @@ double difference(const Tensor& a, const Tensor& b) {
 
 }  // namespace
 
-TEST_CASE("equal to the generator to rounding, fed back, while classes change") {
+TEST_CASE("equals the generator to rounding over several steps with changing classes") {
   struct Case {
     std::size_t frames, batch, dof, hidden, noise;
     bool attention;
@@ -85,7 +85,7 @@ TEST_CASE("equal to the generator to rounding, fed back, while classes change") 
     }
 }
 
-TEST_CASE("a sample alone and beside others: the same bits") {
+TEST_CASE("a sample is the same alone and in a batch, bit for bit") {
   const Context& c = context(Precision::f32);
   constexpr std::size_t frames = 30, dof = 93;
   const AttentionGenerator g = generator(c, {.dof = dof, .classes = classes, .hidden = 256});
@@ -102,7 +102,7 @@ TEST_CASE("a sample alone and beside others: the same bits") {
   }
 }
 
-TEST_CASE("weights are those of the moment it was made; memory is taken once") {
+TEST_CASE("weights are read at construction; buffers are allocated once") {
   const Context& c = context(Precision::f32);
   AttentionGenerator g = generator(c, {.dof = 6, .classes = classes, .hidden = 16});
   AttentionRollout rollout(g);
@@ -112,7 +112,7 @@ TEST_CASE("weights are those of the moment it was made; memory is taken once") {
   const ContextStatistics warm = c.statistics();
   Tensor motion = x;
   for (int i = 0; i < 20; ++i) motion = rollout.step(motion, y);
-  CHECK(c.statistics().allocations <= warm.allocations + 1);  // a result and the prior it was made of
+  CHECK(c.statistics().allocations <= warm.allocations + 1);  // a result and its prior
   CHECK(c.statistics().writes == warm.writes);
   CHECK(c.statistics().reads == warm.reads);
   for (const NamedParameter& p : named_parameters(g)) {
@@ -124,7 +124,7 @@ TEST_CASE("weights are those of the moment it was made; memory is taken once") {
   CHECK(AttentionRollout(g).step(x, y).to_host() != before);
 }
 
-TEST_CASE("what does not fit is named") {
+TEST_CASE("inputs of the wrong shape are rejected") {
   const Context& c = context(Precision::f32);
   const AttentionGenerator g = generator(c, {.dof = 6, .classes = classes, .hidden = 16, .noise_dim = 2});
   AttentionRollout rollout(g);
@@ -134,11 +134,11 @@ TEST_CASE("what does not fit is named") {
     return message_of([&] { rollout.step(p, k, n); });
   };
   CHECK(message(prior(c, 8, 4, 5), y, z) ==
-        "AttentionRollout: a prior [8, 4, 5], expected [frames, batch, 6]");
+        "AttentionRollout: prior [8, 4, 5], expected [frames, batch, 6]");
   CHECK(message(x, one_hot(c, 3), z) == "AttentionRollout: classes [3, 3], expected [4, 3]");
   CHECK(says(message(x, y, {}), "noise [], expected [4, 2]"));
   const AttentionGenerator quiet = generator(c, {.dof = 6, .classes = classes, .hidden = 16});
   AttentionRollout other(quiet);
-  CHECK(says(message_of([&] { other.step(x, y, z); }), "the generator takes none"));
+  CHECK(says(message_of([&] { other.step(x, y, z); }), "the generator takes no noise"));
   CHECK(rollout.step(x, y, z).shape() == Shape{8, 4, 6});
 }

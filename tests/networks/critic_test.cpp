@@ -1,4 +1,4 @@
-// The CNN critic: its parameters by name, its level weights, its first and second derivatives.
+// The CNN critic: parameter names, level weights, first and second derivatives.
 #include <doctest/doctest.h>
 
 #include <motiongan/nn/state_dict.hpp>
@@ -52,7 +52,7 @@ std::vector<double> scores(const CnnCritic& model, std::size_t frames) {
 
 }  // namespace
 
-TEST_CASE("parameters by name and shape, for every way to validate") {
+TEST_CASE("parameter names and shapes, for every validation mode") {
   const std::vector<std::string> text{"text.embedding.weight [7, 4]",
                                       "text.lstm.weight_ih_l0 [16, 4]",
                                       "text.lstm.weight_hh_l0 [16, 4]",
@@ -95,7 +95,7 @@ TEST_CASE("the score is the weighted sum of the levels' scores, convex at first"
   for (LevelWeights kind : {LevelWeights::exp, LevelWeights::softmax}) {
     CnnCritic model = made({.frames = 8, .level_weights = kind});
     const std::vector<double> at_first = scores(model, 8);
-    // Each level by itself: all weight on it.
+    // Each level by itself, with all weight on it.
     std::vector<double> mean(batch, 0), weighted(batch, 0);
     const std::vector<double> w{0.3, -1, 0.5, 2};
     double total = 0;
@@ -117,7 +117,7 @@ TEST_CASE("the score is the weighted sum of the levels' scores, convex at first"
       CHECK(found[b] == doctest::Approx(weighted[b]).epsilon(1e-12));
     }
   }
-  // A softmax does not see a shift of all its weights: it always sums to one.
+  // A softmax is invariant to a shift of all its weights.
   CnnCritic model = made({.frames = 8, .level_weights = LevelWeights::softmax});
   set(model, "level_weight", {1, 2, 3, 4});
   const std::vector<double> a = scores(model, 8);
@@ -125,7 +125,7 @@ TEST_CASE("the score is the weighted sum of the levels' scores, convex at first"
   CHECK(scores(model, 8)[0] == doctest::Approx(a[0]).epsilon(1e-12));
 }
 
-TEST_CASE("a sample's score does not depend on its batch; text and motion both count") {
+TEST_CASE("a sample's score does not depend on its batch; it depends on text and motion") {
   const CnnCritic model = made({.frames = 4});
   const std::vector<double> both = scores(model, 4);
   const Var first = slice(Var::constant(some_motion(4)), 1, 0, 1);
@@ -136,7 +136,7 @@ TEST_CASE("a sample's score does not depend on its batch; text and motion both c
   CHECK(model(2 * first, text).item() != both[0]);
 }
 
-TEST_CASE("motion of another size is refused") {
+TEST_CASE("motion of another size is rejected") {
   const CnnCritic model = made({.frames = 4});
   const Var text = model.encode_text(some_text());
   CHECK_THROWS_WITH_AS(model(Var::constant(some_motion(8)), text),
@@ -144,7 +144,7 @@ TEST_CASE("motion of another size is refused") {
   CHECK_THROWS_AS(made({.frames = 33}), Error);
 }
 
-TEST_CASE("derivatives of the score by motion and every parameter") {
+TEST_CASE("derivatives of the score with respect to motion and every parameter") {
   for (const CnnCriticOptions& options :
        {CnnCriticOptions{.frames = 4}, CnnCriticOptions{.frames = 4, .level_weights = LevelWeights::softmax},
         CnnCriticOptions{.frames = 4, .taps = 5, .validation = Validation::mod2}}) {
@@ -161,7 +161,7 @@ TEST_CASE("derivatives of the score by motion and every parameter") {
   }
 }
 
-TEST_CASE("the penalty's gradient by every parameter equals central differences of the penalty") {
+TEST_CASE("the penalty's gradient for every parameter equals central differences") {
   for (LevelWeights kind : {LevelWeights::exp, LevelWeights::softmax}) {
     CnnCritic model = made({.frames = 4, .level_weights = kind});
     const std::vector<NamedParameter> parameters = named_parameters(model);

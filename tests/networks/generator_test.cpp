@@ -1,4 +1,4 @@
-// The CNN generator: its parameters by name, the final cut, its derivatives.
+// The CNN generator: parameter names, final cut, derivatives.
 #include <doctest/doctest.h>
 
 #include <motiongan/nn/state_dict.hpp>
@@ -22,7 +22,7 @@ CnnGenerator made(const Context& context, std::size_t frames, bool final_cut, st
                                                 .final_cut = final_cut});
 }
 
-/// "name [shape in files]", in the order of the model.
+/// "name [shape in files]", in the model's order.
 std::vector<std::string> listed(CnnGenerator& model) {
   std::vector<std::string> lines;
   for (const NamedParameter& p : named_parameters(model))
@@ -30,7 +30,7 @@ std::vector<std::string> listed(CnnGenerator& model) {
   return lines;
 }
 
-/// Noise of every frame of every level.
+/// Noise for every frame of every level.
 std::vector<Var> all_noise(const Context& context, std::size_t levels, std::size_t batch) {
   std::vector<Var> z;
   for (std::size_t i = 0; i <= levels; ++i)
@@ -49,7 +49,7 @@ double largest_difference(const Var& a, const Var& b) {
 
 }  // namespace
 
-TEST_CASE("parameters by name and shape, as a PyTorch model would have them") {
+TEST_CASE("parameter names and shapes, as in a PyTorch model") {
   const std::vector<std::string> text{"text.embedding.weight [9, 4]",
                                       "text.lstm.weight_ih_l0 [16, 4]",
                                       "text.lstm.weight_hh_l0 [16, 4]",
@@ -76,13 +76,13 @@ TEST_CASE("parameters by name and shape, as a PyTorch model would have them") {
     expected.push_back(line);
   CnnGenerator plain = made(double_context(), 4, false);
   CHECK(listed(plain) == expected);
-  CnnGenerator cut = made(double_context(), 2, true);  // makes 4 frames: the same parameters
+  CnnGenerator cut = made(double_context(), 2, true);  // generates 4 frames with the same parameters
   CHECK(listed(cut) == expected);
   CnnGenerator five = made(double_context(), 4, false, 5);
   CHECK(listed(five).at(23) == "residual.1.conv1.weight [4, 4, 5]");
 }
 
-TEST_CASE("the final cut keeps N frames of the 2N that the model without cut makes, gradients too") {
+TEST_CASE("the final cut keeps N of the 2N frames of the model without cut, gradients included") {
   const Context& context = double_context();
   for (std::size_t taps_count : {3, 5}) {
     const std::size_t frames = 8;
@@ -110,14 +110,14 @@ TEST_CASE("the final cut keeps N frames of the 2N that the model without cut mak
       CAPTURE(ours[i].name);
       CHECK(largest_difference(a[i], b[i]) < 1e-11);
     }
-    // The noise of noise() is that of all frames, made only where it is needed.
+    // noise() returns the needed frames of the noise for all frames.
     const RandomKey key{.seed = 8};
     const std::vector<Var> made_z = cut_model.noise(context, key, batch, cut);
     CHECK(largest_difference(cut_model(text, made_z, cut), kept) < 1e-13);
   }
 }
 
-TEST_CASE("first derivatives by every parameter, with and without cut, 3 and 5 taps") {
+TEST_CASE("first derivatives with respect to every parameter, with and without cut, 3 and 5 taps") {
   const Context& context = double_context();
   for (bool final_cut : {false, true})
     for (std::size_t taps_count : {3, 5}) {
@@ -138,9 +138,9 @@ TEST_CASE("first derivatives by every parameter, with and without cut, 3 and 5 t
     }
 }
 
-TEST_CASE("wrong noise is refused") {
+TEST_CASE("noise of another size is rejected") {
   CnnGenerator model = made(double_context(), 4, false);
   const Sentences text(double_context(), {{1}}, vocabulary);
   CHECK_THROWS_WITH_AS(model(text, all_noise(double_context(), 1, 1), {}),
-                       "CnnGenerator: noise for 2 levels, 3 expected", Error);
+                       "CnnGenerator: noise for 2 levels, expected 3", Error);
 }

@@ -1,4 +1,4 @@
-// The losses beside the critic, against values computed by hand.
+// The auxiliary generator losses, against values computed by hand.
 #include <doctest/doctest.h>
 
 #include <motiongan/networks/motion_losses.hpp>
@@ -20,13 +20,13 @@ motion::Joint joint(const char* name, int parent, double below) {
   return made;
 }
 
-/// A root, a knee 2 below it and a foot 4 below that; a toe of no length. Mean bone length 3.
+/// A root, a knee 2 below it, a foot 4 below the knee, and a toe of zero length. Mean bone length 3.
 motion::PositionFormat leg() {
   motion::Skeleton skeleton;
   skeleton.joints = {joint("root", -1, 0), joint("knee", 0, -2), joint("foot", 1, -4), joint("toe", 2, 0)};
   motion::PositionFormat format;
   format.layout = motion::PositionLayout(skeleton, false);
-  // The root's three numbers never change: they are dropped. 9 are kept.
+  // The root's three dimensions are constant and dropped. 9 are kept.
   std::vector<double> mean(12, 0.0), deviation(12, 0.5);
   mean[4] = -2, mean[7] = -6, mean[10] = -6;
   deviation[0] = deviation[1] = deviation[2] = 0;
@@ -36,7 +36,7 @@ motion::PositionFormat leg() {
   return format;
 }
 
-/// Frames of one sample from the places of knee, foot and toe along y, normalised as leg() does.
+/// Frames of one sample from the heights of knee, foot and toe, normalised as by leg().
 Var along_y(const std::vector<std::array<double, 3>>& frames) {
   std::vector<double> values;
   for (const auto& [knee, foot, toe] : frames)
@@ -49,20 +49,20 @@ Var along_y(const std::vector<std::array<double, 3>>& frames) {
 
 TEST_CASE("the skeleton loss by hand") {
   const SkeletonLoss loss(double_context(), leg());
-  const Var prior = along_y({{-2, -6, -6}, {-9, -9, -9}});  // only its first frame counts: bones of 2 and 4
+  const Var prior = along_y({{-2, -6, -6}, {-9, -9, -9}});  // only its first frame is used: bones of 2 and 4
   CHECK(loss(prior, along_y({{-2, -6, -6}, {2, 6, 5}})).item() == doctest::Approx(0).epsilon(1e-9));
-  // Bones of 3 and 4, then of 2 and 7: errors 1 and 3 in two frames; over the mean length of 3.
+  // Bones of 3 and 4, then of 2 and 7: errors 1 and 3 in two frames, divided by the mean length 3.
   CHECK(loss(prior, along_y({{-3, -7, -7}, {-2, -9, -9}})).item() == doctest::Approx((1 + 9) / 2.0 / 9));
-  // Directions count only when vectors are compared: both bones turned over are 4 and 8 off.
+  // Directions matter only for bone vectors: the two flipped bones are off by 4 and 8.
   const SkeletonLoss vectors(double_context(), leg(), true);
   CHECK(vectors(prior, along_y({{2, 6, 6}})).item() == doctest::Approx((16 + 64) / 9.0));
-  // Over two samples it is the mean, each against its own prior.
+  // The mean over two samples, each against its own prior.
   const Var both = concatenate({along_y({{-3, -7, -7}}), along_y({{-2, -6, -6}})}, 1);
   const Var priors = concatenate({along_y({{-2, -6, -6}}), along_y({{-2, -9, -9}})}, 1);
   CHECK(loss(priors, both).item() == doctest::Approx((1.0 + 9.0) / 2 / 9));
 }
 
-TEST_CASE("bones collapsed to a point have a gradient") {
+TEST_CASE("bones collapsed to a point have a finite gradient") {
   const SkeletonLoss loss(double_context(), leg());
   const Var prior = along_y({{-2, -6, -6}});
   const Var x = Var::leaf(along_y({{0, 0, 0}}).value());
@@ -89,7 +89,7 @@ TEST_CASE("the blend loss by hand") {
   CHECK(blend_loss(prior, future).item() == doctest::Approx(((1 + 4) + (0 + 9)) / 2.0));
 }
 
-TEST_CASE("cross entropy by hand, and far from 0") {
+TEST_CASE("cross-entropy by hand, and for large logits") {
   const Var logits =
       Var::constant(Tensor::from(double_context(), {2, 2}, std::vector<double>{0, 0, 1000, 0}));
   const auto against = [&](std::vector<std::size_t> labels) {
@@ -103,11 +103,11 @@ TEST_CASE("cross entropy by hand, and far from 0") {
              "label 2 of sample 1, expected less than 2"));
 }
 
-TEST_CASE("a skeleton without bones has nothing to keep") {
+TEST_CASE("a skeleton without bones is rejected") {
   motion::PositionFormat format = leg();
   motion::Skeleton point;
   point.joints = {joint("root", -1, 0)};
   format.layout = motion::PositionLayout(point, true);
   format.normalizer = motion::Normalizer(std::vector<double>(7, 0.0), std::vector<double>(7, 1.0));
-  CHECK(says(message_of([&] { SkeletonLoss(double_context(), format); }), "no bone of any length"));
+  CHECK(says(message_of([&] { SkeletonLoss(double_context(), format); }), "no bone of non-zero length"));
 }

@@ -1,4 +1,4 @@
-// The RNN critic: its parameters by name, its scores by the equation, its first and second derivatives.
+// The RNN critic: parameter names, scores against eq. 10, first and second derivatives.
 #include <doctest/doctest.h>
 
 #include <map>
@@ -28,7 +28,7 @@ Tensor some_motion(std::size_t frames, std::uint64_t seed = 1) {
   return random_normal(double_context(), {.seed = seed}, frames, batch, dof);
 }
 
-/// Every number of x [.., in] through the layer called `name`.
+/// x [.., in] through the linear layer called `name`, in plain loops.
 Var linear(const std::map<std::string, Var>& parameters, const std::string& name, const Var& x) {
   const Var &w = parameters.at(name + ".weight"), &b = parameters.at(name + ".bias");
   Shape shape = x.shape();
@@ -38,7 +38,7 @@ Var linear(const std::map<std::string, Var>& parameters, const std::string& name
   return reshape(y + broadcast_to(b, {rows, out}), shape);
 }
 
-/// Eq. 10, layer by layer as it is printed, for one sample: motion [N, 1, dof], text [1, k].
+/// Eq. 10 (Lin & Amer) layer by layer for one sample: motion [N, 1, dof], text [1, k].
 double by_the_equation(RnnCritic& model, const Var& motion, const Var& h_txt) {
   std::map<std::string, Var> p;
   for (const NamedParameter& named : named_parameters(model)) p[named.name] = *named.value;
@@ -65,7 +65,7 @@ double by_the_equation(RnnCritic& model, const Var& motion, const Var& h_txt) {
 
 }  // namespace
 
-TEST_CASE("parameters by name and shape") {
+TEST_CASE("parameter names and shapes") {
   RnnCritic model = made();
   std::vector<std::string> lines;
   for (const NamedParameter& p : named_parameters(model))
@@ -96,7 +96,7 @@ TEST_CASE("parameters by name and shape") {
   CHECK(named_parameters(model).back().value->value().to_host() == std::vector<float>{0.5F, 0.5F});
 }
 
-TEST_CASE("scores are those of the equation, on the LSTM's states or on the differences themselves") {
+TEST_CASE("scores follow eq. 10, on the LSTM's states or on the differences") {
   std::vector<double> by_option;
   for (DiffInput diff_input : {DiffInput::hidden, DiffInput::difference})
     for (std::size_t frames : {2, 3, 9}) {
@@ -115,7 +115,7 @@ TEST_CASE("scores are those of the equation, on the LSTM's states or on the diff
   CHECK(by_option[2] != doctest::Approx(by_option[5]).epsilon(1e-3));
 }
 
-TEST_CASE("a sample's score does not depend on its batch; text and motion both count") {
+TEST_CASE("a sample's score does not depend on its batch; it depends on text and motion") {
   const RnnCritic model = made();
   const std::vector<double> both =
       model(Var::constant(some_motion(6)), model.encode_text(some_text())).value().to_host<double>();
@@ -127,7 +127,7 @@ TEST_CASE("a sample's score does not depend on its batch; text and motion both c
   CHECK(model(2 * first, text).item() != both[0]);
 }
 
-TEST_CASE("motion of one frame or another size is refused") {
+TEST_CASE("motion of one frame or another size is rejected") {
   const RnnCritic model = made();
   const Var text = model.encode_text(some_text());
   CHECK(message_of([&] { model(Var::constant(some_motion(1)), text); }) ==
@@ -140,11 +140,11 @@ TEST_CASE("motion of one frame or another size is refused") {
         "RnnCritic: vocabulary, dof and hidden must be positive");
 }
 
-TEST_CASE("derivatives of the score by motion and every parameter") {
+TEST_CASE("derivatives of the score with respect to motion and every parameter") {
   for (DiffInput diff_input : {DiffInput::hidden, DiffInput::difference}) {
     RnnCritic model = made(diff_input);
     const std::vector<NamedParameter> parameters = named_parameters(model);
-    // (Motion 1 brings a ReLU to its kink.)
+    // Motion 1 puts a ReLU at its kink.
     std::vector<testing::Input> at{{{4, batch, dof}, some_motion(4, 3).to_host<double>()}};
     for (const NamedParameter& p : parameters)
       at.push_back({p.value->shape(), p.value->value().to_host<double>()});
@@ -156,7 +156,7 @@ TEST_CASE("derivatives of the score by motion and every parameter") {
   }
 }
 
-TEST_CASE("the penalty's gradient by every parameter equals central differences of the penalty") {
+TEST_CASE("the penalty's gradient for every parameter equals central differences") {
   for (DiffInput diff_input : {DiffInput::hidden, DiffInput::difference})
     for (std::size_t frames : {2, 7}) {
       CAPTURE(frames);

@@ -1,4 +1,4 @@
-// Motions of the RNN generator frame by frame: the same as at once, whatever else is in the stream.
+// RnnStream: motion equals the generator's, whatever else is in the stream.
 #include <doctest/doctest.h>
 
 #include <motiongan/networks/rnn_stream.hpp>
@@ -23,7 +23,7 @@ const RnnGenerator& model() {
   return generator;
 }
 
-/// Motion [frames, dof] as the generator makes it at once.
+/// Motion [frames, dof] of the generator in one call.
 std::vector<float> at_once(const StreamStart& start, std::size_t frames,
                            const std::vector<float>& prior = {}) {
   const NoGrad values_only;
@@ -58,7 +58,7 @@ std::vector<float> prior(std::size_t frames) {
 
 }  // namespace
 
-TEST_CASE("in steps as at once, bit for bit, beside others that come and go") {
+TEST_CASE("steps equal one call, bit for bit, while others are added and removed") {
   Recorder r;
   const StreamId first = r.stream.add({a})[0];
   r.step(3);
@@ -72,7 +72,7 @@ TEST_CASE("in steps as at once, bit for bit, beside others that come and go") {
   CHECK(r.motions[later[1]] == at_once(c, 30));
 }
 
-TEST_CASE("a prior is continued as the generator completes it; one prior may serve several") {
+TEST_CASE("a prior is continued as by the generator; several motions may share one") {
   for (std::size_t n : {1u, 5u}) {
     CAPTURE(n);
     const std::vector<float> seed = prior(n);
@@ -87,20 +87,20 @@ TEST_CASE("a prior is continued as the generator completes it; one prior may ser
   }
 }
 
-TEST_CASE("another text changes what follows, and nothing of the others") {
+TEST_CASE("a new text changes the rest of a motion, and no other motion") {
   Recorder r;
   const auto ids = r.stream.add({a, b});
   r.step(4);
   r.stream.set_sentence(ids[0], {6, 7});
   r.step(6);
   const std::vector<float> before = at_once(a, 10);
-  const auto end_of_old = static_cast<std::ptrdiff_t>(5 * dof);  // the fifth frame was made ahead
+  const auto end_of_old = static_cast<std::ptrdiff_t>(5 * dof);  // the fifth frame had been computed ahead
   CHECK(std::equal(before.begin(), before.begin() + end_of_old, r.motions[ids[0]].begin()));
   CHECK_FALSE(std::equal(before.begin() + end_of_old, before.end(), r.motions[ids[0]].begin() + end_of_old));
   CHECK(r.motions[ids[1]] == at_once(b, 10));
 }
 
-TEST_CASE("steps allocate nothing on the device, however many") {
+TEST_CASE("steps allocate nothing on the device") {
   RnnStream stream(model());
   std::vector<StreamStart> many;
   for (std::uint32_t i = 0; i < 50; ++i) many.push_back({{1, 2}, 1, i});
@@ -113,7 +113,7 @@ TEST_CASE("steps allocate nothing on the device, however many") {
   CHECK(context().statistics().reads == warm.reads + 500);
 }
 
-TEST_CASE("a stream that was emptied begins anew") {
+TEST_CASE("a cleared stream starts over") {
   Recorder r;
   r.stream.add({a, b, c});
   r.step(7);
@@ -125,7 +125,7 @@ TEST_CASE("a stream that was emptied begins anew") {
   CHECK(r.motions[id] == at_once(b, 9));
 }
 
-TEST_CASE("an empty stream, ids that are gone and priors of another size") {
+TEST_CASE("empty streams, removed ids and priors of another size") {
   RnnStream stream(model());
   CHECK(stream.step(3).empty());
   CHECK(stream.add({}).empty());
@@ -133,8 +133,8 @@ TEST_CASE("an empty stream, ids that are gone and priors of another size") {
   stream.remove(id);
   CHECK(stream.size() == 0);
   CHECK(stream.step().empty());
-  CHECK(says(message_of([&] { stream.remove(id); }), "no motion with the id 0"));
+  CHECK(says(message_of([&] { stream.remove(id); }), "no motion with id 0"));
   CHECK(says(message_of([&] { stream.set_sentence(99, {1}); }), "id 99"));
-  CHECK(says(message_of([&] { stream.add({a}, prior(2), 3); }), "a prior of 3 frames has 14 numbers"));
+  CHECK(says(message_of([&] { stream.add({a}, prior(2), 3); }), "a prior of 3 frames has 14 values"));
   CHECK(says(message_of([&] { stream.add({{{}, 1, 0}}); }), "without a word"));
 }

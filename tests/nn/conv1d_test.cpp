@@ -47,7 +47,7 @@ Var random(std::size_t frames, std::size_t batch, std::size_t channels) {
 
 }  // namespace
 
-TEST_CASE("Conv1d is PyTorch's, for 1, 3, 5 and 7 taps and as few frames as one") {
+TEST_CASE("Conv1d matches PyTorch, for 1, 3, 5 and 7 taps and from one frame") {
   Initializer init(double_context(), 1);
   for (std::size_t taps_count : {1, 3, 5, 7})
     for (std::size_t frames : {1, 2, 3, 4, 8, 13}) {
@@ -60,7 +60,7 @@ TEST_CASE("Conv1d is PyTorch's, for 1, 3, 5 and 7 taps and as few frames as one"
     }
 }
 
-TEST_CASE("residual and ReLU are added after the convolution") {
+TEST_CASE("residual and ReLU are applied after the convolution") {
   Initializer init(double_context(), 2);
   const Conv1d conv(init, 4, 4, 3);
   const Var x = random(6, 2, 4);
@@ -70,7 +70,7 @@ TEST_CASE("residual and ReLU are added after the convolution") {
   check_near(conv(x, {.residual = x, .relu = true}).value().to_host<double>(), expected);
 }
 
-TEST_CASE("Conv1d::down is Down of the convolution, and so are its gradients") {
+TEST_CASE("Conv1d::down equals the pooled convolution, gradients included") {
   Initializer init(double_context(), 3);
   const Conv1d conv(init, 5, 7, 3);
   for (std::size_t frames : {2, 3, 4, 5, 8, 32}) {
@@ -90,10 +90,10 @@ TEST_CASE("Conv1d::down is Down of the convolution, and so are its gradients") {
   }
   const Conv1d five(init, 2, 2, 5);
   CHECK_THROWS_WITH_AS(conv_down(random(4, 1, 2), five.weight, five.bias, 4),
-                       "conv_down: 3 taps expected, 5 found", Error);
+                       "conv_down: weight has 5 taps, expected 3", Error);
 }
 
-TEST_CASE("Linear multiplies the last axis, whatever stands before it") {
+TEST_CASE("Linear applies to the last axis, whatever the others") {
   Initializer init(double_context(), 5);
   const Linear linear(init, 4, 3);
   const Var x = random(2, 3, 4);
@@ -113,21 +113,21 @@ TEST_CASE("Linear multiplies the last axis, whatever stands before it") {
   CHECK(linear(x).shape() == Shape{2, 3, 3});
 }
 
-TEST_CASE("wrong sizes are refused with both shapes") {
+TEST_CASE("wrong sizes are rejected, with both shapes") {
   Initializer init(double_context(), 6);
-  CHECK_THROWS_WITH_AS(Conv1d(init, 4, 4, 2), "Conv1d: 2 taps; same padding needs an odd number", Error);
+  CHECK_THROWS_WITH_AS(Conv1d(init, 4, 4, 2), "Conv1d: taps is 2, expected an odd number for same padding", Error);
   const Conv1d conv(init, 4, 4, 3);
-  CHECK_THROWS_WITH_AS(conv(random(2, 2, 5)), "taps: input [2, 2, 5] does not fit weights [3, 4, 4]", Error);
+  CHECK_THROWS_WITH_AS(conv(random(2, 2, 5)), "conv1d: input [2, 2, 5] does not fit weights [3, 4, 4]", Error);
 }
 
-TEST_CASE("numbers of frames that halve") {
+TEST_CASE("numbers of frames that are powers of two") {
   CHECK(levels_of(1) == 0);
   CHECK(levels_of(32) == 5);
   CHECK(levels_of(1024) == 10);
-  for (const auto& [frames, text] : {std::pair{33, "33 was asked; the nearest are 32 and 64"},
-                                     {31, "31 was asked; the nearest are 16 and 32"},
-                                     {3, "3 was asked; the nearest are 2 and 4"},
-                                     {0, "0 was asked; the nearest are 1 and 2"}}) {
+  for (const auto& [frames, text] : {std::pair{33, "33; the nearest are 32 and 64"},
+                                     {31, "31; the nearest are 16 and 32"},
+                                     {3, "3; the nearest are 2 and 4"},
+                                     {0, "0; the nearest are 1 and 2"}}) {
     std::string found;
     try {
       levels_of(static_cast<std::size_t>(frames));
@@ -138,7 +138,7 @@ TEST_CASE("numbers of frames that halve") {
   }
 }
 
-TEST_CASE("many rows, whose weights are packed first, give the bits of few rows") {
+TEST_CASE("many rows, with packed weights, give the same bits as few rows") {
   for (const Precision precision : {Precision::f32, Precision::f64}) {
     const Context context({.precision = precision});
     Initializer init(context, 4);

@@ -1,4 +1,4 @@
-// First weights: PyTorch's distributions, and independence of each other.
+// Initial weights: PyTorch's distributions, and independence.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ const Context& context() {
   return c;
 }
 
-/// Within [-bound, bound], reaching close to both ends, with a uniform's mean and variance.
+/// Within [-bound, bound], reaching close to both ends, with the mean and variance of a uniform distribution.
 void check_uniform(const Var& v, double bound) {
   const std::vector<float> x = v.value().to_host();
   const double n = static_cast<double>(x.size());
@@ -34,7 +34,7 @@ void check_uniform(const Var& v, double bound) {
 
 }  // namespace
 
-TEST_CASE("Linear and Conv1d: uniform within one over the root of what one output sums") {
+TEST_CASE("Linear and Conv1d: uniform within 1 / sqrt(fan_in)") {
   Initializer init(context(), 1);
   const Conv1d conv(init, 40, 500, 5);
   check_uniform(conv.weight, 1 / std::sqrt(200.0));
@@ -44,7 +44,7 @@ TEST_CASE("Linear and Conv1d: uniform within one over the root of what one outpu
   check_uniform(linear.bias, 0.1);
 }
 
-TEST_CASE("LSTM: uniform within one over the root of its width, both layers") {
+TEST_CASE("LSTM: uniform within 1 / sqrt(hidden), both layers") {
   Initializer init(context(), 2);
   const Lstm lstm(init, 30, 64, 2);
   CHECK(lstm.hidden() == 64);
@@ -72,7 +72,7 @@ TEST_CASE("Embedding: standard normal") {
   CHECK(std::abs(square - 1) < 5 * std::sqrt(2 / n));
 }
 
-TEST_CASE("the same seed gives the same weights, another seed others, and no two arrays are alike") {
+TEST_CASE("equal seeds give equal weights, other seeds others, and no two arrays are equal") {
   const auto weights = [](std::uint64_t seed) {
     Initializer init(context(), seed);
     TextEncoder encoder(init, 10, 16);
@@ -89,7 +89,7 @@ TEST_CASE("the same seed gives the same weights, another seed others, and no two
   }
 }
 
-TEST_CASE("in double the first weights are those of float") {
+TEST_CASE("initial weights in double equal those in float") {
   const Context doubles({.precision = Precision::f64});
   Initializer a(context(), 5), b(doubles, 5);
   CHECK(Linear(a, 7, 9).weight.value().to_host<double>() == Linear(b, 7, 9).weight.value().to_host<double>());

@@ -1,4 +1,4 @@
-// Parameters in files: PyTorch's order of numbers, and what is refused.
+// Parameters in files: PyTorch's memory layout, and rejected files.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -15,7 +15,7 @@ const Context& context() {
   return c;
 }
 
-/// A convolution and a linear layer, as a model would hold them.
+/// A model of a convolution and a linear layer.
 struct Pair {
   Conv1d conv;
   Linear linear;
@@ -42,7 +42,7 @@ io::SafeTensors saved(Pair& pair, const std::string& prefix = "") {
   return file;
 }
 
-/// What load_parameters says about a file; the model must not have changed then.
+/// The error of load_parameters for a file; checks that the model is unchanged.
 std::string refusal(const io::SafeTensors& file) {
   Pair pair(77);
   const auto before = values(pair);
@@ -60,7 +60,7 @@ bool says(const std::string& text, const char* part) { return text.find(part) !=
 
 }  // namespace
 
-TEST_CASE("names, shapes and the order of a convolution's numbers") {
+TEST_CASE("names, shapes and the layout of a convolution's weights") {
   Pair pair(1);
   const io::SafeTensors file = saved(pair);
   REQUIRE(file.tensors.size() == 4);
@@ -77,7 +77,7 @@ TEST_CASE("names, shapes and the order of a convolution's numbers") {
   CHECK(file.at("linear.weight").as<float>() == pair.linear.weight.value().to_host());
 }
 
-TEST_CASE("a round trip through a file keeps every bit, with a prefix too") {
+TEST_CASE("a round trip through a file keeps every bit, also with a prefix") {
   const auto path = std::filesystem::temp_directory_path() / "motiongan_state_dict_test.safetensors";
   for (const std::string prefix : {"", "generator."}) {
     Pair pair(1), other(2);
@@ -89,7 +89,7 @@ TEST_CASE("a round trip through a file keeps every bit, with a prefix too") {
   std::filesystem::remove(path);
 }
 
-TEST_CASE("numbers of other types are read, whole numbers are not") {
+TEST_CASE("other floating-point types are read, integers are not") {
   Pair pair(3);
   io::SafeTensors file = saved(pair);
   file.tensors["conv.bias"] = io::SafeTensor::of({4}, std::vector<double>{1, 2, 3, 4});
@@ -111,7 +111,7 @@ TEST_CASE("double contexts write and read doubles") {
   CHECK(w.value().to_host<double>() == fine);
 }
 
-TEST_CASE("a file that does not fit is refused by tensor, and nothing has changed") {
+TEST_CASE("a file that does not fit is rejected by tensor and changes nothing") {
   Pair pair(1);
   io::SafeTensors missing = saved(pair);
   missing.tensors.erase("linear.bias");

@@ -18,7 +18,7 @@ std::vector<float> encode(const Context& context, const TextEncoder& encoder, co
 
 }  // namespace
 
-TEST_CASE("sentences: layout, and what is refused") {
+TEST_CASE("sentences: layout, and invalid words") {
   const Context context;
   const Sentences s(context, {{3, 1}, {5, 6, 7}}, vocabulary);
   CHECK(s.batch == 2);
@@ -28,9 +28,9 @@ TEST_CASE("sentences: layout, and what is refused") {
   CHECK(std::vector<cl_int>(words.begin(), words.begin() + 4) == std::vector<cl_int>{3, 5, 1, 6});
   CHECK(words[5] == 7);
   CHECK_THROWS_WITH_AS(Sentences(context, {{1}, {}}, vocabulary),
-                       "a sentence without a word: every sample needs a description", Error);
+                       "a sentence is empty: every sample needs a description", Error);
   CHECK_THROWS_WITH_AS(Sentences(context, {{1, 12}}, vocabulary),
-                       "word number 12 is outside the vocabulary of 12 words", Error);
+                       "word id 12 is outside the vocabulary of 12 words", Error);
   CHECK_THROWS_AS(Sentences(context, {{-1}}, vocabulary), Error);
 }
 
@@ -53,7 +53,7 @@ TEST_CASE("a sentence is encoded the same alone and in a batch, bit for bit") {
   }
 }
 
-TEST_CASE("words behind a sentence's end do not count, in the value and in the gradient") {
+TEST_CASE("padding affects neither value nor gradient") {
   const Context context;
   Initializer init(context, 4);
   TextEncoder encoder(init, vocabulary, 16);
@@ -65,7 +65,7 @@ TEST_CASE("words behind a sentence's end do not count, in the value and in the g
     std::vector<std::vector<float>> all{y.value().to_host()};
     const std::vector<Var> gradients = grad(sum(square(y)), parameters);
     for (std::size_t i = 1; i < gradients.size(); ++i) all.push_back(gradients[i].value().to_host());
-    // Of the table, only the rows of words that count have a gradient.
+    // Only the embedding rows of real words have a gradient.
     const std::vector<float> table = gradients[0].value().to_host();
     for (std::size_t row = 0; row < vocabulary; ++row) {
       double size = 0;
@@ -80,7 +80,7 @@ TEST_CASE("words behind a sentence's end do not count, in the value and in the g
   CHECK(run(7) == reference);
 }
 
-TEST_CASE("derivatives of the whole encoder, first and second") {
+TEST_CASE("first and second derivatives of the whole encoder") {
   const Context& context = testing::double_context();
   Initializer init(context, 9);
   TextEncoder encoder(init, vocabulary, 3);
@@ -97,5 +97,5 @@ TEST_CASE("derivatives of the whole encoder, first and second") {
     CHECK(testing::check_grads(context, f, at, order) < 1e-7);
   };
   check({0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, 1);
-  check({0, 2, 9}, 2);  // the table, the first layer's recurrent weights, the projection
+  check({0, 2, 9}, 2);  // embedding, the first layer's recurrent weights, projection
 }

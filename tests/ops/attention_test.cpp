@@ -1,4 +1,4 @@
-// Attention along time: values by the equations, derivatives against differences, gamma's start.
+// Self-attention along time: values, derivatives against differences, gamma = 0.
 #include <doctest/doctest.h>
 
 #include <motiongan/core/random.hpp>
@@ -12,7 +12,7 @@ using namespace motiongan::testing;
 
 namespace {
 
-/// A layer whose gamma is open.
+/// A layer with non-zero gamma.
 SelfAttention made(std::size_t channels, double gamma) {
   Initializer init(double_context(), 3);
   SelfAttention layer(init, channels);
@@ -26,8 +26,8 @@ Var random(std::size_t frames, std::size_t batch, std::size_t channels, std::uin
 
 }  // namespace
 
-TEST_CASE("products of frames, sample by sample") {
-  // Two samples of one channel: what each frame of a has to do with each of c.
+TEST_CASE("frame products, sample by sample") {
+  // Two samples of one channel: the product of each frame of a with each frame of c.
   const Var a = Var::constant(Tensor::from(double_context(), {2, 2, 1}, std::vector<double>{1, 10, 2, 20}));
   const Var c =
       Var::constant(Tensor::from(double_context(), {3, 2, 1}, std::vector<double>{1, 1, 3, 5, 4, 6}));
@@ -46,13 +46,13 @@ TEST_CASE("products of frames, sample by sample") {
         }).starts_with("attention_apply: a map [2, 2, 3] over frames [2, 2, 1]"));
 }
 
-TEST_CASE("rows of a map sum to one, over the frames that are taken from") {
+TEST_CASE("rows of an attention map sum to one") {
   const Var map = attention_map(random(4, 2, 3, 1), random(5, 2, 3, 2));
   CHECK(map.shape() == Shape{2, 5, 4});
   for (const double total : sum(map, -1).value().to_host<double>()) CHECK(total == doctest::Approx(1));
 }
 
-TEST_CASE("first, second and third derivative") {
+TEST_CASE("first, second and third derivatives") {
   const auto check = [](const Function& f, const std::vector<Input>& at) {
     CHECK(check_grads(double_context(), f, at, 3) < 1e-7);
   };
@@ -63,7 +63,7 @@ TEST_CASE("first, second and third derivative") {
   check([](auto& v) { return attention_apply(attention_map(v[0], v[1]), v[0]) * v[1]; }, {c, randn({5, 2, 4})});
 }
 
-TEST_CASE("the layer, by its input and all of its parameters") {
+TEST_CASE("the layer's derivatives with respect to input and parameters") {
   SelfAttention layer = made(8, 0.7);
   std::vector<Input> at{randn({4, 2, 8})};
   std::vector<Shape> shapes;
@@ -77,7 +77,7 @@ TEST_CASE("the layer, by its input and all of its parameters") {
   CHECK(check_grads(double_context(), f, at, 2) < 1e-7);
 }
 
-TEST_CASE("with gamma 0 the layer is the identity, and only gamma learns") {
+TEST_CASE("with gamma 0 the layer is the identity, and only gamma has a gradient") {
   Initializer init(double_context(), 3);
   SelfAttention layer(init, 16);
   CHECK(layer.gamma.item() == 0);

@@ -1,4 +1,4 @@
-// Every differentiable operation: first, second and third derivative against central differences, in double.
+// Every differentiable operation: first to third derivatives against central differences, in double.
 #include <doctest/doctest.h>
 
 #include <motiongan/ops/cross_entropy.hpp>
@@ -27,7 +27,7 @@ const Input positive(Shape shape) {
 
 }  // namespace
 
-TEST_CASE("elementwise") {
+TEST_CASE("elementwise operations") {
   const Input x = randn({3, 7}), y = randn({3, 7}), kinked = randn({3, 7}, 0.05);
   check("affine", [](auto& v) { return affine(v[0], 1.7, -0.3); }, {x});
   check("weighted_sum", [](auto& v) { return weighted_sum(v[0], 2, v[1], -3); }, {x, y});
@@ -44,7 +44,7 @@ TEST_CASE("elementwise") {
   check("mixed", [](auto& v) { return tanh(v[0] * v[1]) * exp(v[1]) + sigmoid(v[0]); }, {x, y});
 }
 
-TEST_CASE("sums and expansions") {
+TEST_CASE("reductions and broadcasts") {
   const Input x = randn({4, 3, 5});
   for (int axis : {0, 1, 2, -1})
     check("sum", [=](auto& v) { return square(sum(v[0], axis, 0.5)); }, {x});
@@ -64,15 +64,15 @@ TEST_CASE("sums and expansions") {
   check("cross_entropy", [](auto& v) { return cross_entropy(v[0], v[1]); }, {randn({4, 3}), randn({4, 3})});
 }
 
-TEST_CASE("relu of a sum of which one part is repeated") {
-  // Values far from the kink, so that no step crosses it.
+TEST_CASE("relu of a sum with a broadcast operand") {
+  // Values far from the kink, so that no difference step crosses it.
   Input big = randn({6, 2, 5}, 3), small = randn({3, 2, 5});
   for (double& v : small.values) v *= 0.5;
   for (std::size_t i = 0; i < big.values.size(); ++i) big.values[i] += 2 * (big.values[i] > 0 ? 1 : -1);
   check("relu_of_sum", [](auto& v) { return square(relu_of_sum(v[0], v[1])); }, {big, small});
 }
 
-TEST_CASE("layout") {
+TEST_CASE("layout operations") {
   const Input x = randn({5, 3, 4});
   const Indices offset(double_context(), std::vector<cl_int>{-2, 0, 3}),
       index(double_context(), std::vector<cl_int>{2, 0, 2, 1});
@@ -99,7 +99,7 @@ TEST_CASE("layout") {
         {randn({4, 5})});
 }
 
-TEST_CASE("matmul, plain, transposed and in batches") {
+TEST_CASE("matmul: plain, transposed and batched") {
   for (bool ta : {false, true})
     for (bool tb : {false, true}) {
       check("matmul", [=](auto& v) { return square(matmul(v[0], v[1], ta, tb)); },
@@ -131,7 +131,7 @@ TEST_CASE("taps: convolutions and linear layers") {
   check("bias and residual",
         [](auto& v) { return square(conv1d(v[0], v[1], {0}, 4, false, {.bias = v[2], .residual = v[3]})); },
         {randn({4, 3}), randn({1, 5, 3}), randn({5}), randn({4, 5})});
-  Input apart = randn({5}, 20);  // every sum is far from ReLU's kink
+  Input apart = randn({5}, 20);  // every sum is far from the ReLU's kink
   check(
       "bias and relu",
       [](auto& v) { return square(conv1d(v[0], v[1], {0}, 4, false, {.bias = v[2], .relu = true})); },
@@ -144,7 +144,7 @@ TEST_CASE("taps: convolutions and linear layers") {
       {randn({4, 2, 3}), randn({4, 2, 5})}, 2);
 }
 
-TEST_CASE("lstm layer: fused first derivative, composed higher ones, sentence lengths") {
+TEST_CASE("LSTM layer: fused first derivative, composed higher ones, sequence lengths") {
   const std::size_t frames = 3, batch = 2, k = 3;
   const std::vector<Input> at{randn({frames, batch, 4 * k}), randn({4 * k, k}), randn({batch, k}),
                               randn({batch, k})};

@@ -1,4 +1,4 @@
-// The rollout of a GRU: all derivatives in double, and the fused form against the composed one.
+// The GRU rollout: derivatives in double, and the fused form against the composed one.
 #include <doctest/doctest.h>
 
 #include <motiongan/ops/gru_rollout.hpp>
@@ -11,7 +11,7 @@ using namespace motiongan::testing;
 
 namespace {
 
-/// x_gates, each, last, W_h, b_h, pose, Wd, bd; weights small, so that nothing saturates.
+/// x_gates, each, last, W_h, b_h, pose, Wd, bd; small weights avoid saturation.
 std::vector<Input> inputs(std::size_t given, std::size_t batch, std::size_t dof, std::size_t k) {
   std::vector<Input> all{randn({given, batch, 3 * k}),
                          randn({batch, 3 * k}),
@@ -39,7 +39,7 @@ Function composed(std::size_t frames) {
 
 }  // namespace
 
-TEST_CASE("gru_rollout: derivatives of every input, to third order") {
+TEST_CASE("gru_rollout: derivatives with respect to every input, to third order") {
   for (const auto& sizes :
        {std::array<std::size_t, 3>{1, 1, 3}, {3, 1, 2}, {1, 3, 3}, {3, 3, 9}, {2, 4, 5}}) {
     const std::size_t given = sizes[0], frames = sizes[1], k = sizes[2];
@@ -50,7 +50,7 @@ TEST_CASE("gru_rollout: derivatives of every input, to third order") {
   CHECK(check_grads(double_context(), fused(2), inputs(2, 2, 2, 2), 3) < 1e-7);
 }
 
-TEST_CASE("gru_rollout: the fused form is the composed one") {
+TEST_CASE("gru_rollout: the fused form equals the composed one") {
   for (const auto& sizes : {std::array<std::size_t, 2>{1, 1}, {5, 1}, {1, 6}, {4, 7}}) {
     const std::size_t given = sizes[0], frames = sizes[1];
     CAPTURE(given);
@@ -74,11 +74,11 @@ TEST_CASE("gru_rollout: the fused form is the composed one") {
       CHECK(difference(ga[i], gb[i]) < 1e-10);
     }
     const NoGrad off;
-    CHECK(difference(fused(frames)(x), a) == 0);  // nothing is kept: the same bits
+    CHECK(difference(fused(frames)(x), a) == 0);  // without a trace: the same bits
   }
 }
 
-TEST_CASE("gru_rollout: few launches a step; wrong shapes are named") {
+TEST_CASE("gru_rollout: few launches per step; wrong shapes are rejected") {
   const Context context;
   std::vector<Var> x;
   for (const Input& i : inputs(9, 2, 16, 32))

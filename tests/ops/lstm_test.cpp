@@ -1,5 +1,5 @@
-// The LSTM layer: values, first, second and third derivatives against central differences and against the
-// layer composed of elementary operations, in double.
+// The LSTM layer: values and first to third derivatives, against central differences and against the layer
+// composed of elementary operations, in double.
 #include <doctest/doctest.h>
 
 #include <motiongan/ops/lstm.hpp>
@@ -16,7 +16,7 @@ constexpr std::size_t batch = 2;
 Tensor on_device(const Input& input) { return Tensor::from(double_context(), input.shape, input.values); }
 Var constant(const Input& input) { return Var::constant(on_device(input)); }
 
-/// gates, recurrent weights, first h, first c.
+/// Gates, recurrent weights, initial h, initial c.
 std::vector<Input> layer_inputs(std::size_t frames, std::size_t k) {
   Input weights = randn({4 * k, k});
   for (double& v : weights.values) v /= std::sqrt(static_cast<double>(k));
@@ -30,7 +30,7 @@ Var composed(const Var& x, const Var& w, const Var& h, const Var& c) {
   return detail::lstm_layer_composed(x, w, h, c, {});
 }
 
-/// Gradient of <g, layer> by the gates alone, as a gradient penalty takes it. v: gates, weights, g.
+/// Gradient of <g, layer> with respect to the gates only, as in a gradient penalty. v: gates, weights, g.
 Function gate_gradient_of(const Layer& layer, const Var& h_first, const Var& c_first) {
   return [=](const std::vector<Var>& v) {
     return grad({layer(v[0], v[1], h_first, c_first)}, {v[2]}, {v[0]}, {.create_graph = true})[0];
@@ -51,7 +51,7 @@ void check_equal(const Var& found, const Var& expected, double tolerance) {
 
 }  // namespace
 
-TEST_CASE("derivatives by all four inputs: fused first, composed higher ones") {
+TEST_CASE("derivatives with respect to all four inputs: fused first, composed higher ones") {
   for (std::size_t k : {3, 8, 17})
     for (std::size_t frames : {1, 2, 5}) {
       CAPTURE(k);
@@ -61,7 +61,7 @@ TEST_CASE("derivatives by all four inputs: fused first, composed higher ones") {
     }
 }
 
-TEST_CASE("the gradient by the gates alone, differentiated by gates, weights and its seed") {
+TEST_CASE("derivatives of the gradient for the gates, with respect to gates, weights and seed") {
   for (std::size_t k : {3, 8, 17})
     for (std::size_t frames : {1, 2, 5}) {
       CAPTURE(k);
@@ -70,7 +70,7 @@ TEST_CASE("the gradient by the gates alone, differentiated by gates, weights and
       const Var h = constant(in[2]), c = constant(in[3]);
       const std::vector<Input> at{in[0], in[1], randn({2, frames, batch, k})};
       CHECK(check_grads(double_context(), gate_gradient_of(fused, h, c), at, k == 3 ? 3 : 2) < 1e-7);
-      // Beside the composed form: the gradient, and its gradients by all three.
+      // Against the composed form: the gradient, and its gradients for all three.
       std::vector<Var> v;
       for (const Input& input : at) v.push_back(Var::leaf(on_device(input)));
       const Var a = gate_gradient_of(fused, h, c)(v), b = gate_gradient_of(composed, h, c)(v);
@@ -104,14 +104,14 @@ TEST_CASE("a penalty on the gradient through two layers") {
   const std::size_t middle = launches();
   const auto b = grad(penalty_of(composed)(v), v);
   for (std::size_t i = 0; i < v.size(); ++i) check_equal(a[i], b[i], 1e-12);
-  CHECK(middle - start < (launches() - middle) / 5);  // the fused way was really taken
+  CHECK(middle - start < (launches() - middle) / 5);  // the fused kernels were used
 }
 
-TEST_CASE("what the fused second derivative does not cover is composed, and right") {
+TEST_CASE("second derivatives outside the fused form are composed, and correct") {
   const std::size_t frames = 3, k = 3;
   const auto in = layer_inputs(frames, k);
   const Input seed = randn({2, frames, batch, k});
-  SUBCASE("first states that are differentiated by later") {
+  SUBCASE("initial states with gradients") {
     const Function f = [](const std::vector<Var>& v) {
       return grad({lstm_layer(v[0], v[1], v[2], v[3])}, {v[4]}, {v[0]}, {.create_graph = true})[0];
     };
@@ -125,7 +125,7 @@ TEST_CASE("what the fused second derivative does not cover is composed, and righ
     };
     CHECK(check_grads(double_context(), f, {in[0], in[1], seed}, 2) < 1e-7);
   }
-  SUBCASE("by the weights") {
+  SUBCASE("with respect to the weights") {
     const Function f = [&](const std::vector<Var>& v) {
       const Var states = lstm_layer(v[0], v[1], constant(in[2]), constant(in[3]));
       return grad({states}, {v[2]}, {v[1]}, {.create_graph = true})[0];
@@ -134,7 +134,7 @@ TEST_CASE("what the fused second derivative does not cover is composed, and righ
   }
 }
 
-TEST_CASE("first derivatives with lengths equal the composed form's") {
+TEST_CASE("first derivatives with sequence lengths equal the composed form's") {
   const std::size_t frames = 4, k = 5;
   const auto in = layer_inputs(frames, k);
   const Indices lengths(double_context(), std::vector<cl_int>{4, 2});
@@ -148,7 +148,7 @@ TEST_CASE("first derivatives with lengths equal the composed form's") {
   for (std::size_t i = 0; i < v.size(); ++i) check_equal(of_a[i], of_b[i], 1e-12);
 }
 
-TEST_CASE("h alone: the layer without its cells, to the third derivative") {
+TEST_CASE("h only: the layer without cell states, to the third derivative") {
   for (std::size_t frames : {1, 4}) {
     CAPTURE(frames);
     const std::size_t k = 3;

@@ -1,4 +1,4 @@
-// The recurrent rollout: all derivatives in double, and the fused form against the composed one.
+// The LSTM rollout: derivatives in double, and the fused form against the composed one.
 #include <doctest/doctest.h>
 
 #include <motiongan/ops/rollout.hpp>
@@ -10,7 +10,7 @@ using namespace motiongan::testing;
 
 namespace {
 
-/// given, x_gates, W0, W1, b1, Wd, bd; weights small, so that nothing saturates.
+/// given, x_gates, W0, W1, b1, Wd, bd; small weights avoid saturation.
 std::vector<Input> inputs(std::size_t frames, std::size_t batch, std::size_t dof, std::size_t k,
                           std::size_t given) {
   std::vector<Input> all{randn({given, batch, dof}),
@@ -32,7 +32,7 @@ Var composed(const std::vector<Var>& v) {
 
 }  // namespace
 
-TEST_CASE("rollout: derivatives of every input, free and with given frames") {
+TEST_CASE("rollout: derivatives with respect to every input, with and without given frames") {
   for (const auto& [frames, k, given] :
        {std::array<std::size_t, 3>{4, 3, 1}, {5, 3, 3}, {3, 5, 3}, {2, 9, 1}}) {
     CAPTURE(frames);
@@ -42,7 +42,7 @@ TEST_CASE("rollout: derivatives of every input, free and with given frames") {
   CHECK(check_grads(double_context(), fused, inputs(3, 2, 2, 2, 1), 3) < 1e-7);
 }
 
-TEST_CASE("rollout: the fused form is the composed one") {
+TEST_CASE("rollout: the fused form equals the composed one") {
   for (std::size_t given : {1u, 4u, 9u}) {
     CAPTURE(given);
     std::vector<Var> x;
@@ -66,7 +66,7 @@ TEST_CASE("rollout: the fused form is the composed one") {
   }
 }
 
-TEST_CASE("rollout: one frame is what is given; wrong shapes are named") {
+TEST_CASE("rollout: one frame returns the given one; wrong shapes are rejected") {
   const Context& context = double_context();
   const auto value = [&](Shape shape) { return zeros(context, std::move(shape)); };
   const RolloutWeights w{value({8, 5}), value({8, 4}), value({8}), value({3, 2}), value({3})};

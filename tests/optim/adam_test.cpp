@@ -1,4 +1,4 @@
-// Adam against PyTorch's formula on the host, and against numbers that PyTorch 1.13 gave.
+// Adam against PyTorch's formula on the host, and against results of PyTorch 1.13.
 #include <doctest/doctest.h>
 
 #include <motiongan/nn/linear.hpp>
@@ -8,13 +8,13 @@ using namespace motiongan;
 
 namespace {
 
-/// The gradient of the first five parameters at step t: five very different sizes, signs that change.
+/// The gradient of the first five parameters at step t: very different magnitudes, changing signs.
 double gradient(std::size_t i, std::size_t t) {
   constexpr double scale[] = {1, 1e-3, 100, 1, 1e-6};
   return (static_cast<double>((i * 7 + t * 3) % 11) - 5) / 8 * scale[i % 5];
 }
 
-/// torch.optim.Adam, one number at a time.
+/// torch.optim.Adam, elementwise.
 struct PlainAdam {
   AdamOptions o;
   std::vector<double> p, m, v;
@@ -109,16 +109,16 @@ TEST_CASE("all parameters move into one buffer, and one launch updates them") {
   for (const Var& p : adam.parameters()) gradients.push_back(ones(context, p.shape()));
   const std::size_t launches = context.statistics().launches, reads = context.statistics().reads;
   adam.step(gradients);
-  CHECK(context.statistics().launches - launches == gradients.size() + 1);  // a copy each, and the update
+  CHECK(context.statistics().launches - launches == gradients.size() + 1);  // one copy each, and the update
   CHECK(context.statistics().reads == reads);
-  // The first step moves every number by the learning rate.
+  // The first step moves every parameter by the learning rate.
   CHECK(first.weight.value().to_host()[5] == doctest::Approx(before[0][5] - 1e-4));
   CHECK(second.bias.value().to_host()[1] == doctest::Approx(before[3][1] - 1e-4));
-  // A layer that was used before sees the new numbers.
+  // A layer created before sees the new values.
   CHECK(first(ones(context, {1, 6})).value().to_host() != std::vector<float>(4, 0));
 }
 
-TEST_CASE("a gradient of zero moves nothing at first") {
+TEST_CASE("a zero gradient changes nothing at first") {
   const Context context;
   Var p = Var::leaf(full(context, {3}, 2));
   Adam adam({{"p", &p}});
@@ -126,7 +126,7 @@ TEST_CASE("a gradient of zero moves nothing at first") {
   CHECK(p.value().to_host() == std::vector<float>(3, 2));
 }
 
-TEST_CASE("wrong gradients are refused and change nothing") {
+TEST_CASE("invalid gradients are rejected and change nothing") {
   const Context context;
   Var p = Var::leaf(full(context, {2, 3}, 1)), q = Var::leaf(full(context, {3}, 1));
   CHECK_THROWS_WITH_AS(Adam({}), "Adam: no parameters", Error);

@@ -1,4 +1,4 @@
-// Stochastic gradient descent against numbers worked out by hand.
+// Stochastic gradient descent, against values computed by hand.
 #include <doctest/doctest.h>
 
 #include <motiongan/optim/sgd.hpp>
@@ -21,7 +21,7 @@ Var constant(const std::vector<double>& values) {
 
 }  // namespace
 
-TEST_CASE("the gradient of all parameters together is shortened, and the rate falls") {
+TEST_CASE("the global gradient norm is clipped, and the learning rate decays") {
   Var p = Var::leaf(constant({1, 2}).value()), q = Var::leaf(constant({10}).value());
   Sgd sgd({{"p", &p}, {"q", &q}}, {.learning_rate = 0.1, .decay = 0.5, .decay_every = 2, .clip_norm = 3});
   const auto step = [&](std::vector<double> of_p, std::vector<double> of_q) {
@@ -35,10 +35,10 @@ TEST_CASE("the gradient of all parameters together is shortened, and the rate fa
     CHECK(found[1] == doctest::Approx(b).epsilon(1e-14));
     CHECK(found[2] == doctest::Approx(c).epsilon(1e-14));
   };
-  check(step({1, 2}, {2}), 0.9, 1.8, 9.8);        // norm 3, as long as it may be
+  check(step({1, 2}, {2}), 0.9, 1.8, 9.8);        // norm 3, the maximum
   check(step({2, 4}, {-4}), 0.8, 1.6, 10.0);      // norm 6: halved
-  check(step({1, 2}, {2}), 0.75, 1.5, 9.9);       // from here on half the rate
-  check(step({0, 0}, {-300}), 0.75, 1.5, 10.05);  // norm 300: a hundredth of it
+  check(step({1, 2}, {2}), 0.75, 1.5, 9.9);       // from here on half the learning rate
+  check(step({0, 0}, {-300}), 0.75, 1.5, 10.05);  // norm 300: scaled by 1/100
   check(step({0, 0}, {0}), 0.75, 1.5, 10.05);     // no gradient, no division by zero
   CHECK(sgd.steps() == 5);
   CHECK(sgd.rate(3) == 0.05);
@@ -56,7 +56,7 @@ TEST_CASE("the defaults are those of residual seq2seq") {
   CHECK(sgd.options().clip_norm == 5);
 }
 
-TEST_CASE("without a limit or a fall: plain descent; long parameters; nothing is read back") {
+TEST_CASE("without clipping and decay: plain descent; large parameters; no reads from the device") {
   for (const double limit : {0.0, 2.0}) {
     std::vector<double> values(10'001), gradient;
     double square = 0;
@@ -80,11 +80,11 @@ TEST_CASE("without a limit or a fall: plain descent; long parameters; nothing is
   }
 }
 
-TEST_CASE("options and gradients that cannot be") {
+TEST_CASE("invalid options and gradients are rejected") {
   Var p = Var::leaf(constant({1, 2}).value());
   CHECK(says(message_of([] { Sgd({}); }), "Sgd: no parameters"));
   CHECK(says(message_of([&] { Sgd({{"p", &p}}, {.learning_rate = 0}); }), "Sgd: learning rate 0"));
-  CHECK(says(message_of([&] { Sgd({{"p", &p}}, {.clip_norm = -1}); }), "longest gradient -1"));
+  CHECK(says(message_of([&] { Sgd({{"p", &p}}, {.clip_norm = -1}); }), "clip_norm -1"));
   CHECK(says(message_of([&] { Sgd({{"p", &p}}, {.decay = 0}); }), "decay 0"));
   Sgd sgd({{"p", &p}});
   CHECK(says(message_of([&] { sgd.step({constant({1})}); }),

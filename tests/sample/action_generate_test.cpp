@@ -1,4 +1,4 @@
-// Whole clips of the attention model: schedules, priors in front, clips made again.
+// Whole clips of the attention model: schedules, priors, synthetic clips.
 #include <doctest/doctest.h>
 
 #include <motiongan/procedural/procedural.hpp>
@@ -34,7 +34,7 @@ double apart(const motion::Vec3& a, const motion::Vec3& b) { return motion::leng
 
 }  // namespace
 
-TEST_CASE("schedules are read, and what is wrong with them is named") {
+TEST_CASE("schedules are parsed, and errors name the piece") {
   const motion::PositionFormat& format = data().format;  // jump run walk, 10 per second
   const auto read = [&](const char* text, double seconds = 0) {
     return parse_action_schedule(text, format, seconds);
@@ -60,11 +60,11 @@ TEST_CASE("schedules are read, and what is wrong with them is named") {
   refused("walk:0s", "found the length '0s'");
   refused("walk:0.001s", "expected at least 1");
   refused("walk:1e300s", "less than 2^31");
-  refused("walk:3s,run", "nothing is left", 3);
-  refused("walk:3s", "but 5 were asked for", 5);
+  refused("walk:3s,run", "nothing of the 3 seconds", 3);
+  refused("walk:3s", "but 5 were requested", 5);
 }
 
-TEST_CASE("a schedule's class changes on the frame; the prior stands in front") {
+TEST_CASE("classes change on the scheduled frame; the prior comes first") {
   const ActionGan model(context(), data().format, {.hidden = 8});
   std::vector<ActionPrior> priors;
   for (std::size_t i = 0; i < 3; ++i)
@@ -78,7 +78,7 @@ TEST_CASE("a schedule's class changes on the frame; the prior stands in front") 
     CHECK(clips[i].positions.size() == 41 * joints);
     CHECK(clips[i].id == priors[i].id);
     CHECK(std::equal(priors[i].positions.begin(), priors[i].positions.end(), clips[i].positions.begin()));
-    // Alone, by hand: 8 and 5 frames of the first class, 8, 8 and 4 of the second.
+    // One clip by hand: 8 and 5 frames of the first class, 8, 8 and 4 of the second.
     ActionStream stream(model);
     const auto id = stream.add({.prior = &priors[i], .label = 2});
     std::vector<motion::Vec3> expected;
@@ -95,7 +95,7 @@ TEST_CASE("a schedule's class changes on the frame; the prior stands in front") 
   CHECK(bare.front().frames == 33);
   CHECK(std::equal(bare.front().positions.begin(), bare.front().positions.end(),
                    clips.front().positions.begin() + static_cast<std::ptrdiff_t>(8 * joints)));
-  CHECK_THROWS_WITH_AS(generate(model, priors, {}), doctest::Contains("without frames"), Error);
+  CHECK_THROWS_WITH_AS(generate(model, priors, {}), doctest::Contains("schedule has no frames"), Error);
 }
 
 TEST_CASE("a synthetic clip has the real one's prior, class and length") {
@@ -120,9 +120,9 @@ TEST_CASE("a synthetic clip has the real one's prior, class and length") {
         }
         CHECK(before == 0);
         CHECK(after > 1);
-        CHECK((roots < 1e-6) == !root);  // without root channels it goes where the real one went
+        CHECK((roots < 1e-6) == !root);  // without root channels it follows the real clip
       }
-      // Equal to that of a clip alone.
+      // Equal to synthesising the clip alone.
       const auto alone = synthesise(model, d, std::span(d.train).subspan(1, 1));
       CHECK(alone.front().clip.positions == made[1].clip.positions);
     }

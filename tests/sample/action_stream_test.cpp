@@ -1,4 +1,4 @@
-// Characters of the attention model: whoever stands beside them, whatever comes and goes.
+// ActionStream: characters are independent of each other.
 #include <doctest/doctest.h>
 
 #include <motiongan/procedural/procedural.hpp>
@@ -57,7 +57,7 @@ const std::vector<ActionGanOptions> kinds{
 
 }  // namespace
 
-TEST_CASE("a prior is the clip's own poses, from any frame on") {
+TEST_CASE("a prior has the clip's own poses, from any frame") {
   const ActionDataset& d = data();
   const motion::ActionClip& clip = d.train.front();
   const PositionClip positions = clip_of(d, clip);
@@ -79,12 +79,12 @@ TEST_CASE("a prior is the clip's own poses, from any frame on") {
   CHECK_THROWS_WITH_AS(prior_from(twice, d.format), doctest::Contains("Tail"), Error);
 }
 
-TEST_CASE("a character moves as it would alone, whatever comes and goes") {
+TEST_CASE("a character moves as it would alone while others are added and removed") {
   for (const ActionGanOptions& kind : kinds) {
     const ActionGan model = make_model(kind);
     std::vector<ActionPrior> priors;
     for (std::size_t i = 0; i < data().train.size(); ++i) priors.push_back(prior(i));
-    // Alone: walks two steps, jumps one, runs half a one, then on.
+    // Alone: two steps of walk, one of jump, half a step of run, then more.
     const auto run = [&](ActionStream& stream, ActionStream::Id id, std::size_t step) {
       if (step == 2) stream.set_class(id, "jump");
       if (step == 3) stream.set_class(id, "run");
@@ -119,7 +119,7 @@ TEST_CASE("a character moves as it would alone, whatever comes and goes") {
   }
 }
 
-TEST_CASE("the first second is the model's, noise and class count") {
+TEST_CASE("the first second is the model's and depends on noise and class") {
   const ActionPrior p = prior(0);
   for (const ActionGanOptions& kind : kinds) {
     const ActionGan model = make_model(kind);
@@ -140,7 +140,7 @@ TEST_CASE("the first second is the model's, noise and class count") {
   }
 }
 
-TEST_CASE("the root goes on from where the prior ended, or stands") {
+TEST_CASE("the root continues from the end of the prior, or stays there") {
   for (const bool root : {true, false}) {
     const ActionGan model = make_model({.hidden = 8}, root);
     ActionPrior p = prior(0, 4, root);
@@ -164,7 +164,7 @@ TEST_CASE("the root goes on from where the prior ended, or stands") {
   }
 }
 
-TEST_CASE("streams refuse what cannot be") {
+TEST_CASE("invalid priors, classes and steps are rejected") {
   const ActionGan model = make_model();
   ActionStream stream(model);
   const ActionPrior p = prior(0);

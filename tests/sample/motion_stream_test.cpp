@@ -1,4 +1,4 @@
-// Characters in a stream: the motion that the model makes at once, placed in the world.
+// MotionStream: the model's motion, placed in the world.
 #include <doctest/doctest.h>
 
 #include <motiongan/sample/motion_stream.hpp>
@@ -17,7 +17,7 @@ const Context& context() {
   return c;
 }
 
-/// Clips as they are recorded: somewhere in the room, facing anywhere.
+/// Clips with arbitrary positions and headings, as recorded.
 std::vector<motion::LabelledMotion> clips() {
   auto all = motion::procedural_motions({.clips = 6, .seconds = 6, .rate = 8, .seed = 3});
   for (std::size_t i = 0; i < all.size(); ++i)
@@ -36,7 +36,7 @@ const Dvgan& model() {
   return m;
 }
 
-/// Where the root stands, in the prior's unit, and the angle between two frames' rotations of all joints.
+/// The root's position, in the prior's unit, and the angle between two frames' rotations over all joints.
 double ground_step(const Motion& m, std::size_t a, std::size_t b) {
   return motion::length(motion::subtract(m.position(b, 0), m.position(a, 0)));
 }
@@ -56,7 +56,7 @@ const RootRotation all_forms[] = {RootRotation::velocity, RootRotation::heading,
 
 }  // namespace
 
-TEST_CASE("without a prior: Dvgan::generate's motion, in pieces and beside others, in every root form") {
+TEST_CASE("without a prior: the motion of Dvgan::generate, in any steps, for every root form") {
   for (const RootRotation form : all_forms) {
     CAPTURE(static_cast<int>(form));
     const Dvgan m = make_model(form);
@@ -72,7 +72,7 @@ TEST_CASE("without a prior: Dvgan::generate's motion, in pieces and beside other
     Motion pieces = stream.motion(id);
     CHECK(pieces.frames == 1);
     stream.step(14);
-    CHECK(same(stream.motion(id), stream.motion(id)));  // asking moves nobody
+    CHECK(same(stream.motion(id), stream.motion(id)));  // reading does not advance
     pieces = join(pieces, stream.motion(id));
     stream.remove(first);
     CHECK(stream.motion(id).frames == 14);
@@ -86,7 +86,7 @@ TEST_CASE("without a prior: Dvgan::generate's motion, in pieces and beside other
   }
 }
 
-TEST_CASE("a character begins where it is put") {
+TEST_CASE("a character starts at the given place") {
   for (const RootRotation form : all_forms) {
     CAPTURE(static_cast<int>(form));
     const Dvgan m = make_model(form);
@@ -96,7 +96,7 @@ TEST_CASE("a character begins where it is put") {
     stream.step(10);
     const Motion here = stream.motion(ids[0]), there = stream.motion(ids[1]);
     const bool turned = form != RootRotation::expmap;
-    // The same motion, but for the place and, where there is one, the heading.
+    // The same motion except for position and, if the form has it, heading.
     CHECK(ground_step(here, 0, 9) == doctest::Approx(ground_step(there, 0, 9)));
     const auto first = m.format().layout.track_of(here, 0), moved = m.format().layout.track_of(there, 0);
     double x = first.x, z = first.z;
@@ -108,7 +108,7 @@ TEST_CASE("a character begins where it is put") {
   }
 }
 
-TEST_CASE("a prior goes on without a jump, in the place and the body that it has") {
+TEST_CASE("a prior is continued without a jump, in its place and with its skeleton") {
   Motion prior = clips()[0].motion;  // at 8 per second
   for (motion::Joint& joint : prior.skeleton.joints)
     for (double& length : joint.offset) length *= 1.5;
@@ -127,8 +127,8 @@ TEST_CASE("a prior goes on without a jump, in the place and the body that it has
       CHECK(made.skeleton == prior.skeleton);
       const Motion seed = motion::resample_to_end(prior, 4);
       const Motion whole = join(seed, made);
-      // The model is not trained: it moves little. The seam must not be larger than what comes after it,
-      // up to the rounding of a pose in single precision.
+      // The model is untrained and moves little. The step at the seam must not exceed those after it, up to
+      // the rounding of a pose in single precision.
       double turn = 0, step = 0;
       for (std::size_t f = seed.frames; f + 1 < whole.frames; ++f) {
         turn = std::max(turn, largest_turn(whole, f, f + 1));
@@ -141,7 +141,7 @@ TEST_CASE("a prior goes on without a jump, in the place and the body that it has
   }
 }
 
-TEST_CASE("what follows a prior depends on its last frames, on the text and on the noise") {
+TEST_CASE("the continuation depends on the prior's last frames, the text and the noise") {
   const Motion whole = clips()[1].motion, prior = slice(whole, 0, 20), other = slice(whole, 4, 16);
   MotionStream stream(model());
   const auto ids = stream.add({{.text = "walk", .prior = &prior},
@@ -158,7 +158,7 @@ TEST_CASE("what follows a prior depends on its last frames, on the text and on t
   CHECK(same(alone.motion(id), stream.motion(ids[3])));
 }
 
-TEST_CASE("a new text changes what follows, unknown words are taken, no word is refused") {
+TEST_CASE("a new text changes the motion; unknown words are accepted, empty texts are not") {
   MotionStream stream(model());
   const auto ids = stream.add({{.text = "walk"}, {.text = "walk"}, {.text = "walk"}});
   stream.step(3);
@@ -166,20 +166,20 @@ TEST_CASE("a new text changes what follows, unknown words are taken, no word is 
   stream.set_text(ids[1], "jump");
   stream.set_text(ids[2], "frobnicate");
   stream.step();
-  CHECK(same(stream.motion(ids[0]), stream.motion(ids[1])));  // was made ahead
+  CHECK(same(stream.motion(ids[0]), stream.motion(ids[1])));  // had been computed ahead
   stream.step(5);
   CHECK_FALSE(same(stream.motion(ids[0]), stream.motion(ids[1])));
   CHECK_FALSE(same(stream.motion(ids[2]), stream.motion(ids[1])));
   CHECK(says(message_of([&] { stream.set_text(ids[0], "!"); }), "has no words"));
 }
 
-TEST_CASE("what cannot be done is refused, and changes nothing") {
+TEST_CASE("invalid calls are rejected and change nothing") {
   MotionStream stream(model());
   const CharacterId id = stream.add({.text = "walk"});
   CHECK(says(message_of([&] { stream.motion(id); }), "character 0 has not moved since it was added"));
-  CHECK(says(message_of([&] { stream.step(0); }), "a step of 0 frames"));
-  CHECK(says(message_of([&] { stream.remove(7); }), "no motion with the id 7"));
-  CHECK(says(message_of([&] { stream.motion(7); }), "no motion with the id 7"));
+  CHECK(says(message_of([&] { stream.step(0); }), "frames is 0"));
+  CHECK(says(message_of([&] { stream.remove(7); }), "no motion with id 7"));
+  CHECK(says(message_of([&] { stream.motion(7); }), "no motion with id 7"));
   CHECK(says(message_of([&] { stream.add({{.text = "walk"}, {.text = ".."}}); }), "has no words"));
   Motion prior = clips()[0].motion;
   prior.skeleton.joints[2].name = "Tail";

@@ -1,4 +1,4 @@
-// The distances of generative search against plain loops, and clips that hold a hypothesis.
+// Distances of generative search, against plain loops and for clips that contain a hypothesis.
 #include <doctest/doctest.h>
 
 #include <limits>
@@ -32,7 +32,7 @@ std::vector<float> normals(std::size_t count, unsigned seed) {
   return out;
 }
 
-/// Random hypotheses in the form of a window.
+/// Random hypotheses, relative to their first frame like windows.
 std::vector<std::vector<float>> random_hypotheses(const motion::MotionFormat& format, std::size_t count,
                                                   unsigned seed) {
   std::vector<std::vector<float>> out;
@@ -43,7 +43,7 @@ std::vector<std::vector<float>> random_hypotheses(const motion::MotionFormat& fo
   return out;
 }
 
-/// The definition, shift by shift.
+/// The definition, evaluated shift by shift.
 std::pair<double, int> best_of(const motion::MotionFormat& format, const std::vector<float>& window,
                                const std::vector<float>& hypothesis) {
   std::pair<double, int> best{std::numeric_limits<double>::infinity(), 0};
@@ -56,7 +56,7 @@ std::pair<double, int> best_of(const motion::MotionFormat& format, const std::ve
 
 }  // namespace
 
-TEST_CASE("the definition itself: two frames of one number, counted by hand") {
+TEST_CASE("the definition: two frames of one dimension, by hand") {
   motion::MotionFormat format;
   motion::Skeleton skeleton;
   skeleton.joints = {{"Hips", -1, {0, 0, 0}, {motion::Channel::x_rotation}, {}}};
@@ -68,13 +68,13 @@ TEST_CASE("the definition itself: two frames of one number, counted by hand") {
   CHECK(search_distance(format, window, hypothesis, 0) == doctest::Approx(std::sqrt((9.0 + 1.0) / 2)));
   CHECK(search_distance(format, window, hypothesis, 1) == doctest::Approx(2));   // 2 against 4
   CHECK(search_distance(format, window, hypothesis, -1) == doctest::Approx(0));  // 1 against 1
-  CHECK_THROWS_WITH_AS(search_distance(format, window, hypothesis, 2), doctest::Contains("leaves nothing"),
+  CHECK_THROWS_WITH_AS(search_distance(format, window, hypothesis, 2), doctest::Contains("leaves no overlap"),
                        Error);
   CHECK_THROWS_WITH_AS(search_distance(format, window, {}, 0), doctest::Contains("cannot be compared"),
                        Error);
 }
 
-TEST_CASE("the device finds what plain loops over frames, dimensions and shifts find") {
+TEST_CASE("the device agrees with plain loops over frames, dimensions and shifts") {
   struct Case {
     std::size_t frames, windows, hypotheses, chunk;
     RootRotation rotation;
@@ -92,7 +92,7 @@ TEST_CASE("the device finds what plain loops over frames, dimensions and shifts 
     for (const Case& c : cases) {
       CAPTURE(c.frames);
       CAPTURE(c.windows);
-      // A window of one frame cannot be made by a data set: the format of two is used.
+      // A data set cannot make windows of one frame, so the format of two is used.
       motion::MotionFormat format = format_of(std::max<std::size_t>(2, c.frames), c.rotation, c.position);
       format.frames = c.frames;
       const std::size_t hop = std::max<std::size_t>(1, c.frames / 2), rows = c.windows * hop + c.frames;
@@ -121,7 +121,7 @@ TEST_CASE("the device finds what plain loops over frames, dimensions and shifts 
 }
 
 TEST_CASE(
-    "a clip that holds a hypothesis is found at its shift, wherever and whichever way it was recorded") {
+    "a clip that contains a hypothesis is found at its shift, whatever its position and heading") {
   const Context context;
   for (const RootRotation rotation : {RootRotation::heading, RootRotation::expmap, RootRotation::velocity}) {
     const motion::MotionFormat format = format_of(16, rotation, true);
@@ -135,7 +135,7 @@ TEST_CASE(
       const auto first = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(n) + shift);
       std::copy(hypotheses[2].begin(), hypotheses[2].end(),
                 clip.begin() + static_cast<std::ptrdiff_t>(first * dof));
-      if (const auto turning = format.turning()) {  // somewhere else, looking another way
+      if (const auto turning = format.turning()) {  // another position and heading
         const double yaw = 2.5;
         for (std::size_t t = 0; t < n; ++t) {
           float* const pose = &clip[(first + t) * dof];
@@ -178,13 +178,13 @@ TEST_CASE("equal queries give equal bits, whatever the chunk and whether spectra
   CHECK(a.distance == c.distance);
   CHECK(a.shift == c.shift);
   CHECK(one.kept_bytes() > 0);
-  // Another query in between leaves no trace.
+  // A query in between has no effect.
   const auto others = random_hypotheses(format, 3, 50);
   CHECK(one(others).distance.size() == 3 * starts.size());
   CHECK(one(hypotheses).distance == a.distance);
 }
 
-TEST_CASE("what is no search is refused") {
+TEST_CASE("invalid searches are rejected") {
   const Context context;
   const motion::MotionFormat format = format_of(8, RootRotation::heading, true);
   SearchFrames frames;
@@ -193,7 +193,7 @@ TEST_CASE("what is no search is refused") {
                        doctest::Contains("starts at frame 13 of 20"), Error);
   const SearchWindows search(context, format, frames, {0, 12});
   CHECK_THROWS_WITH_AS(search({}), doctest::Contains("at least one hypothesis"), Error);
-  CHECK_THROWS_WITH_AS(search({{1, 2}}), doctest::Contains("hypothesis 0 has 2 numbers"), Error);
+  CHECK_THROWS_WITH_AS(search({{1, 2}}), doctest::Contains("hypothesis 0 has 2 values"), Error);
   const SearchWindows none(context, format, frames, {});
   CHECK(none(random_hypotheses(format, 1, 1)).distance.empty());
 }

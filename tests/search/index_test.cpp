@@ -1,4 +1,4 @@
-// The index of a collection: read again, brought up to date, made anew; and the list of clips.
+// The search index: read, updated, rebuilt; and the ranking of clips.
 #include <doctest/doctest.h>
 #include <sys/stat.h>
 
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A folder of clips that is removed in the end.
+/// A folder of clips, removed at the end of the test.
 class Folder {
  public:
   Folder() {
@@ -57,7 +57,7 @@ std::string bytes_of(const fs::path& file) {
 
 }  // namespace
 
-TEST_CASE("a collection is read once; what changes is read again, what goes is gone") {
+TEST_CASE("files are read once; changed files are read again, removed files dropped") {
   const Folder folder;
   const motion::MotionFormat format = format_of();
   folder.write("a.bvh", motions()[0].motion);
@@ -97,7 +97,7 @@ TEST_CASE("a collection is read once; what changes is read again, what goes is g
   CHECK(third.removed == 1);
   CHECK(third.written);
   CHECK(third.warnings.empty());
-  // The same as one that is made from nothing.
+  // The same as an index built from scratch.
   fs::remove(third.file);
   const SearchCollection anew = open_search_collection(folder.path, format);
   CHECK(anew.read == 3);
@@ -105,7 +105,7 @@ TEST_CASE("a collection is read once; what changes is read again, what goes is g
   CHECK(anew.index.frames().track == third.index.frames().track);
 }
 
-TEST_CASE("windows: every hop-th and the last; poses are those a data set has") {
+TEST_CASE("windows: every hop frames and the last one; poses equal a data set's") {
   const Folder folder;
   motion::Motion clip = motions()[0].motion;
   folder.write("a.bvh", clip);
@@ -126,10 +126,10 @@ TEST_CASE("windows: every hop-th and the last; poses are those a data set has") 
   float worst = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) worst = std::max(worst, std::abs(poses[i] - expected[i]));
   CHECK(worst < 1e-4f);
-  CHECK_THROWS_WITH_AS(collection.index.windows(0), doctest::Contains("0 frames apart"), Error);
+  CHECK_THROWS_WITH_AS(collection.index.windows(0), doctest::Contains("hop is 0"), Error);
 }
 
-TEST_CASE("another model's format has an index of its own; other words have not") {
+TEST_CASE("another format has its own index, another vocabulary has not") {
   const Folder folder;
   folder.write("a.bvh", motions()[0].motion);
   const motion::MotionFormat one = format_of(16), two = format_of(12);
@@ -141,7 +141,7 @@ TEST_CASE("another model's format has an index of its own; other words have not"
   CHECK(open_search_collection(folder.path, two).read == 1);
   CHECK(open_search_collection(folder.path, one).read == 0);
   CHECK(open_search_collection(folder.path, words).read == 0);
-  // In one file the formats take turns, and it is said.
+  // In one file, a format replaces the other with a warning.
   const fs::path file = folder.path / "mine.safetensors";
   open_search_collection(folder.path, one, file);
   const SearchCollection other = open_search_collection(folder.path, two, file);
@@ -150,7 +150,7 @@ TEST_CASE("another model's format has an index of its own; other words have not"
   CHECK(other.warnings[0].find("made for another model's format") != std::string::npos);
 }
 
-TEST_CASE("a damaged index is made anew with a warning; what is no index is not touched") {
+TEST_CASE("a damaged index is rebuilt with a warning; other files are not overwritten") {
   const Folder folder;
   folder.write("a.bvh", motions()[0].motion);
   const motion::MotionFormat format = format_of();
@@ -176,12 +176,12 @@ TEST_CASE("a damaged index is made anew with a warning; what is no index is not 
   CHECK_THROWS_WITH_AS(open_search_collection(folder.path, format, mine),
                        doctest::Contains("is not a search index and will not be replaced"), Error);
   CHECK(bytes_of(mine) == "not to be lost");
-  // Half an index under a name that somebody chose is one still.
+  // A truncated index under a user-chosen name still counts as an index.
   std::ofstream(mine, std::ios::binary) << whole.substr(0, whole.size() / 2);
   CHECK(open_search_collection(folder.path, format, mine).written);
 }
 
-TEST_CASE("an index that cannot be kept is a warning; files of no use are named") {
+TEST_CASE("an index that cannot be written is a warning; unusable files are named") {
   const Folder folder;
   folder.write("a.bvh", motions()[0].motion);
   const motion::MotionFormat format = format_of();
@@ -191,7 +191,7 @@ TEST_CASE("an index that cannot be kept is a warning; files of no use are named"
   CHECK(found.read == 1);
   CHECK(found.index.clips().size() == 1);
   REQUIRE(found.warnings.size() == 1);
-  CHECK(found.warnings[0].find("give --index FILE a place that can be written") != std::string::npos);
+  CHECK(found.warnings[0].find("give --index a writable FILE") != std::string::npos);
 
   const Folder bad;
   CHECK_THROWS_WITH_AS(open_search_collection(bad.path, format), doctest::Contains("have no .bvh file"),
@@ -209,14 +209,14 @@ TEST_CASE("an index that cannot be kept is a warning; files of no use are named"
   CHECK(mixed.warnings[0].find("1 of 2 files left out; the first: the clip a.bvh") != std::string::npos);
 }
 
-TEST_CASE("the clip that holds a hypothesis is first, once, with its two nearest hypotheses") {
+TEST_CASE("a clip that contains a hypothesis ranks first, once, with its two nearest hypotheses") {
   const Folder folder;
   for (std::size_t i = 0; i < 5; ++i) folder.write("clip" + std::to_string(i) + ".bvh", motions()[i].motion);
   const motion::MotionFormat format = format_of();
   const SearchCollection collection = open_search_collection(folder.path, format);
   const SearchIndex& index = collection.index;
   const auto windows = index.windows(8);
-  // What clip 3 does from its frame 11 on; and the same, disturbed.
+  // Clip 3 from its frame 11, and the same with noise.
   std::vector<std::vector<float>> hypotheses(4, index.poses({0, 0}));
   for (std::size_t i = 0; i < hypotheses[0].size(); ++i) hypotheses[0][i] += i % 2 == 0 ? 3.0f : -3.0f;
   hypotheses[1] = hypotheses[0];
@@ -244,7 +244,7 @@ TEST_CASE("the clip that holds a hypothesis is first, once, with its two nearest
   CHECK(all.hits[0].window.clip == 3);
   for (std::size_t i = 1; i < all.hits.size(); ++i)
     CHECK(all.hits[i].distance() >= all.hits[i - 1].distance());
-  // With one hypothesis there is no second.
+  // With one hypothesis there is no second neighbour.
   const std::vector<std::vector<float>> one{hypotheses[2]};
   const SearchRanking single = rank(
       index, windows, SearchWindows(context, format, index.frames(), index.starts(windows))(one), one, 1);

@@ -1,5 +1,4 @@
-// A small body for the tests of what is drawn: resting handle, hips, spine with a head, two legs, a dead
-// joint.
+// A small body for the view tests: static handle, hips, spine with a head, two legs, a coincident joint.
 #pragma once
 #include <cmath>
 #include <string>
@@ -8,7 +7,7 @@
 
 namespace motiongan::test {
 
-/// A body of 8 joints that walks along +x, facing it, turning its right leg.
+/// A body of 8 joints that walks along +x, facing +x and rotating its right leg.
 inline view::ViewedMotion walker(std::size_t frames, double rate = 30, std::string title = "walk",
                                  std::size_t seed_frames = 0) {
   using motion::Joint;

@@ -23,10 +23,10 @@ TEST_CASE("the side of a joint is read from its name") {
     CHECK(view::side_of(centre) == Side::centre);
 }
 
-TEST_CASE("a figure has a node for every point that stands apart, and end sites are among them") {
+TEST_CASE("a figure has a node for every distinct point, end sites included") {
   const auto viewed = test::walker(20);
   const view::Figure figure = view::make_figure(viewed);
-  // The handle is above the body and LowerBack coincides with the hips; three end sites come on top.
+  // The handle is not drawn and LowerBack coincides with the hips; three end sites are added.
   REQUIRE(figure.nodes() == 9);
   CHECK(figure.parents == std::vector<int>{-1, 0, 1, 0, 3, 4, 0, 6, 7});
   CHECK(figure.heads == std::vector<char>{0, 0, 1, 0, 0, 0, 0, 0, 0});
@@ -41,12 +41,12 @@ TEST_CASE("a figure has a node for every point that stands apart, and end sites 
     CHECK(figure.point(f, 2)[1] == doctest::Approx(global.positions[f * 8 + 3][1] + 20));
   }
   CHECK(figure.heading == doctest::Approx(std::acos(0.0)));
-  CHECK(figure.floor <= 5);  // 90 - 5 - 80, and the toes of the leg that swings
+  CHECK(figure.floor <= 5);  // 90 - 5 - 80, and the toes of the swinging leg
   CHECK(figure.floor > 5 - 15 * std::sin(0.4));
   CHECK(figure.height == doctest::Approx(1.3 * (std::hypot(10, 5) + 80 + 15)));
 }
 
-TEST_CASE("what begins with the same seed is seen from the same side") {
+TEST_CASE("motions with the same seed frames are viewed from the same side") {
   view::ViewedMotion turning = test::walker(20);                            // faces +x
   for (std::size_t f = 5; f < 20; ++f) turning.motion.rotation(f, 1) = {};  // then +z
   CHECK(view::make_figure(turning).heading < 1);
@@ -54,7 +54,7 @@ TEST_CASE("what begins with the same seed is seen from the same side") {
   CHECK(view::make_figure(turning).heading == doctest::Approx(std::acos(0.0)));
 }
 
-TEST_CASE("what cannot be drawn is refused by name") {
+TEST_CASE("motions that cannot be drawn are rejected by name") {
   auto none = test::walker(1, 30, "empty one");
   none.motion.frames = 0;
   none.motion.rotations.clear();

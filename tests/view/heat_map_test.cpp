@@ -11,7 +11,7 @@ using view::Color;
 
 namespace {
 
-/// The box of pixels of exactly this colour: left, top, how many.
+/// The pixels of exactly this colour: leftmost, topmost, number.
 struct Found {
   std::size_t left = 100000, top = 100000, pixels = 0;
 };
@@ -40,7 +40,7 @@ TEST_CASE("colours grow darker from 0 to 1") {
   CHECK(view::heat_color(7) == view::heat_color(1));
 }
 
-TEST_CASE("cells are where and what they should be") {
+TEST_CASE("cells have the right positions and colours") {
   view::HeatMap map;
   map.rows = 2;
   map.columns = 3;
@@ -59,13 +59,13 @@ TEST_CASE("cells are where and what they should be") {
   CHECK(none.left == third.left);  // below it
   CHECK(none.top == third.top + 20);
   CHECK(dark.left == half.left + 20);
-  // Without a highest value the largest one takes its place.
+  // Without `high` the largest value is used.
   map.values = {0.1f, 0.1f, 0.2f, 0.1f, 0.1f, 0.1f};
   const view::Image scaled = view::heat_map(std::vector{map}, {.cell = 20});
   CHECK(find(scaled, view::heat_color(1), bar).pixels == 400);
 }
 
-TEST_CASE("several maps stand side by side, with titles and labels") {
+TEST_CASE("several maps are drawn side by side, with titles and labels") {
   view::HeatMap map;
   map.title = "a title wider than its map";
   map.rows = map.columns = 4;
@@ -77,11 +77,11 @@ TEST_CASE("several maps stand side by side, with titles and labels") {
   const view::Image labelled = view::heat_map(
       std::vector{map}, {.title = "Attention", .row_label = "looks", .column_label = "seen", .cell = 10});
   CHECK(labelled.height > one.height + 60);
-  map.values.assign(16, 0.0f);  // nothing but zeros has a scale too
+  map.values.assign(16, 0.0f);  // all zeros have a scale too
   CHECK(find(view::heat_map(std::vector{map}, {.cell = 10}), view::heat_color(0)).pixels >= 1600);
 }
 
-TEST_CASE("what cannot be drawn is refused") {
+TEST_CASE("invalid maps are rejected") {
   view::HeatMap map;
   map.rows = 2;
   map.columns = 2;

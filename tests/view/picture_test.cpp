@@ -16,7 +16,7 @@ using view::Color;
 
 namespace {
 
-/// Pixels in the given part of the picture that are near `color`.
+/// Number of pixels close to `color` in the given part of the image.
 std::size_t count(const view::Image& image, Color color, std::size_t x0, std::size_t x1, std::size_t y0,
                   std::size_t y1) {
   std::size_t n = 0;
@@ -46,7 +46,7 @@ TEST_CASE("every printable character has a glyph of its own") {
   CHECK_FALSE(view::glyph_pixel(view::glyph('L'), 4, 0));
 }
 
-TEST_CASE("lines cover what they should, and nothing outside the picture is touched") {
+TEST_CASE("lines have the right coverage and are clipped to the image") {
   view::Image image(40, 20);
   view::Canvas canvas(image);
   canvas.line(5, 10, 35, 10, 4, {0, 0, 0});
@@ -64,7 +64,7 @@ TEST_CASE("lines cover what they should, and nothing outside the picture is touc
   CHECK_THROWS_AS(view::Image(100000, 5), Error);
 }
 
-TEST_CASE("text is cut to the room it has") {
+TEST_CASE("text is truncated to the available width") {
   CHECK(view::fitted("short", 100) == "short");
   const std::string cut = view::fitted("a description that is rather long", 120);
   CHECK(view::text_width(cut) <= 120);
@@ -83,7 +83,7 @@ TEST_CASE("a strip has a row of poses for every motion") {
     CHECK(count(strip, orange, 0, w, r * row, (r + 1) * row) > 30);
     CHECK(count(strip, blue, 0, w, r * row, (r + 1) * row) > 30);
   }
-  // Every sixth of the first row holds a pose with both legs; the given frames of the second are grey.
+  // Every sixth of the first row shows a pose with both legs; the second row's seed frames are grey.
   for (std::size_t i = 0; i < 6; ++i) {
     CHECK(count(strip, orange, i * w / 6, (i + 1) * w / 6, 0, row) > 20);
     const bool lively = count(strip, orange, i * w / 6, (i + 1) * w / 6, row, 2 * row) > 0;
@@ -108,13 +108,13 @@ TEST_CASE("left and right are not mirrored") {
   CHECK(left / lefts > right / rights + 5);
 }
 
-TEST_CASE("impossible strips are refused") {
+TEST_CASE("invalid strips are rejected") {
   CHECK_THROWS_AS(view::pose_strip({}), Error);
   CHECK_THROWS_AS(view::pose_strip(std::vector{test::walker(3)}, {.poses = 0}), Error);
   CHECK_THROWS_AS(view::pose_strip(std::vector{test::walker(3)}, {.figure_height = 5}), Error);
 }
 
-TEST_CASE("a plot draws every series in its colour") {
+TEST_CASE("a plot draws each series in its colour") {
   std::vector<view::Series> series{{"wasserstein", {}, {}}, {"penalty", {}, {}}};
   for (int i = 0; i < 200; ++i) {
     series[0].x.push_back(i);
@@ -127,7 +127,7 @@ TEST_CASE("a plot draws every series in its colour") {
   CHECK(plot.height == 480);
   CHECK(count(plot, view::palette(0), 0, 960, 100, 400) > 300);
   CHECK(count(plot, view::palette(1), 0, 960, 100, 430) > 300);
-  // The falling curve begins at the top left and ends at the bottom right.
+  // The falling curve starts at the top left and ends at the bottom right.
   CHECK(count(plot, view::palette(0), 60, 200, 70, 200) > 20);
   CHECK(count(plot, view::palette(0), 700, 960, 70, 200) == 0);
 

@@ -17,7 +17,7 @@ using namespace motiongan;
 
 namespace {
 
-/// The text of the page's data element: what a browser would hand to JSON.parse.
+/// The text of the page's data element, as a browser would pass it to JSON.parse.
 std::string data_text(const std::string& page) {
   const std::string begin = "<script id=\"clips\" type=\"application/json\">";
   const std::size_t from = page.find(begin) + begin.size();
@@ -49,7 +49,7 @@ std::vector<double> decode(const nlohmann::json& clip) {
 
 }  // namespace
 
-TEST_CASE("the page holds the positions of forward kinematics") {
+TEST_CASE("the page contains the positions of forward kinematics") {
   const std::vector<view::ViewedMotion> motions{test::walker(40, 30, "one", 7), test::walker(11, 25, "two")};
   const auto data = nlohmann::json::parse(data_text(view::player_page(motions, {.title = "both"})));
   CHECK(data["title"] == "both");
@@ -73,7 +73,7 @@ TEST_CASE("the page holds the positions of forward kinematics") {
   }
 }
 
-TEST_CASE("fast motions are thinned by whole strides") {
+TEST_CASE("fast motions are subsampled by whole strides") {
   const std::vector<view::ViewedMotion> fast{test::walker(121, 120, "fast", 31)};
   const auto clip = nlohmann::json::parse(data_text(view::player_page(fast)))["clips"][0];
   CHECK(clip["rate"] == 60);
@@ -87,7 +87,7 @@ TEST_CASE("fast motions are thinned by whole strides") {
   CHECK(odd["rate"] == 50);
 }
 
-TEST_CASE("nothing in a title can leave its place") {
+TEST_CASE("titles are escaped") {
   const std::vector<std::string> titles{
       "</script><script>alert(1)</script>",        "<!--",     "a \"quoted\" \\ back", "l'homme & co\n\ttab",
       "\xe6\xad\xa9\xe3\x81\x8f \xf0\x9f\x95\xba", "/*CLIPS*/"};
@@ -102,7 +102,7 @@ TEST_CASE("nothing in a title can leave its place") {
   CHECK(page.find("</title><script>") == std::string::npos);
 }
 
-TEST_CASE("the page asks nothing of the network") {
+TEST_CASE("the page makes no network requests") {
   const std::string page = view::player_page(std::vector{test::walker(5)});
   for (const char* forbidden : {"http:", "https:", "src=", "href=", "@import", "fetch(", "XMLHttpRequest"})
     CHECK_MESSAGE(page.find(forbidden) == std::string::npos, forbidden);

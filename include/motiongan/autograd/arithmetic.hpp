@@ -1,5 +1,4 @@
-// What differentiation itself needs: constants, a*x + b and a*x + b*y. grad() adds gradients with these, and
-// seeds them with ones.
+// Constants and linear operations (a*x + b, a*x + b*y): grad() needs them to seed and accumulate gradients.
 #pragma once
 #include "motiongan/autograd/var.hpp"
 
@@ -26,7 +25,7 @@ inline Tensor binary(const char* kernel, const Tensor& x, const Tensor& y, doubl
 
 }  // namespace detail
 
-/// A tensor filled with one value.
+/// A tensor with all elements equal to `value`.
 inline Tensor full(const Context& context, Shape shape, double value) {
   Tensor out(context, std::move(shape));
   context.launch("elementwise", "fill", detail::vector_grid(out), out, out.size(), KernelReal{value});
@@ -39,13 +38,13 @@ inline Var ones(const Context& context, Shape shape) {
   return Var::constant(full(context, std::move(shape), 1));
 }
 
-/// a*x + b
+/// a*x + b, elementwise.
 inline Var affine(const Var& x, double a, double b = 0) {
   return record("affine", {x}, detail::unary("affine", x.value(), a, b),
                 [a](const Node&, const Var& g, const Needs&) -> std::vector<Var> { return {affine(g, a)}; });
 }
 
-/// a*x + b*y
+/// a*x + b*y, elementwise. Throws Error if the shapes differ.
 inline Var weighted_sum(const Var& x, double a, const Var& y, double b) {
   return record("weighted_sum", {x, y}, detail::binary("axpby", x.value(), y.value(), a, b),
                 [a, b](const Node&, const Var& g, const Needs& needs) -> std::vector<Var> {

@@ -1,4 +1,4 @@
-// Gradients of any order: one sweep backwards through the graph, itself recorded when asked.
+// Reverse-mode differentiation of any order: the backward pass can itself be recorded.
 #pragma once
 #include <algorithm>
 #include <unordered_map>
@@ -9,17 +9,18 @@
 namespace motiongan {
 
 struct GradOptions {
-  bool create_graph = false;  ///< record the backward pass, so that its results can be differentiated again
+  bool create_graph = false;  ///< record the backward pass, so that the gradients can be differentiated again
 };
 
-/// Gradients of sum_i <outputs[i], seeds[i]> by each of `inputs`; zeros where an input has no influence.
-/// Only branches that lead to `inputs` are computed. An empty seed means ones (outputs are usually scalars).
+/// Gradients of sum_i <outputs[i], seeds[i]> with respect to each of `inputs`; zero for an input that no
+/// output depends on. Only branches that lead to `inputs` are computed. An empty seed means ones (outputs are
+/// usually scalars). Throws Error if an input is a constant or a seed's shape is not that of its output.
 inline std::vector<Var> grad(const std::vector<Var>& outputs, const std::vector<Var>& seeds,
                              const std::vector<Var>& inputs, GradOptions options = {}) {
   require(outputs.size() == seeds.size(), "grad: ", outputs.size(), " outputs but ", seeds.size(), " seeds");
   const NoGrad scope(!options.create_graph);
 
-  // What was made before the oldest input cannot depend on any of them.
+  // Nodes created before the oldest input cannot depend on any input.
   std::size_t oldest = static_cast<std::size_t>(-1);
   std::unordered_set<const Node*> wanted;
   for (const Var& input : inputs) {
@@ -31,7 +32,7 @@ inline std::vector<Var> grad(const std::vector<Var>& outputs, const std::vector<
 
   // Reachable nodes, newest first: every node comes before its inputs.
   std::vector<const Node*> order, pending;
-  std::unordered_map<const Node*, bool> leads;  // does a path lead from here to an input?
+  std::unordered_map<const Node*, bool> leads;  // whether a path leads to an input
   const auto visit = [&](const Var& var) {
     if (!var.requires_grad() || var.node()->id < oldest) return;
     if (leads.emplace(var.node().get(), false).second) pending.push_back(var.node().get());
@@ -49,7 +50,7 @@ inline std::vector<Var> grad(const std::vector<Var>& outputs, const std::vector<
     const auto found = leads.find(var.node().get());
     return found != leads.end() && found->second;
   };
-  std::reverse(order.begin(), order.end());  // oldest first: what leads on is known before what is made of it
+  std::reverse(order.begin(), order.end());  // oldest first, so that a node's inputs are known before it
   for (const Node* node : order)
     leads[node] = wanted.contains(node) || std::any_of(node->inputs.begin(), node->inputs.end(), leads_on);
   std::reverse(order.begin(), order.end());
@@ -77,12 +78,12 @@ inline std::vector<Var> grad(const std::vector<Var>& outputs, const std::vector<
     }
     if (!any) continue;
     const Var g = found->second;
-    if (!wanted.contains(node)) gradients.erase(found);  // its buffer may be used again at once
+    if (!wanted.contains(node)) gradients.erase(found);  // frees its buffer for reuse
     const std::vector<Var> of_inputs = node->vjp(*node, g, needs);
     for (std::size_t i = 0; i < of_inputs.size(); ++i) {
       if (!needs[i] || of_inputs[i].empty()) continue;
-      require(of_inputs[i].shape() == node->inputs[i].shape(), "derivative of ", node->operation,
-              " by input ", i, " has shape ", of_inputs[i].shape(), " instead of ", node->inputs[i].shape());
+      require(of_inputs[i].shape() == node->inputs[i].shape(), "gradient of ", node->operation,
+              ", input ", i, ", has shape ", of_inputs[i].shape(), ", expected ", node->inputs[i].shape());
       add(node->inputs[i].node().get(), of_inputs[i]);
     }
   }
@@ -94,6 +95,7 @@ inline std::vector<Var> grad(const std::vector<Var>& outputs, const std::vector<
   return result;
 }
 
+/// Gradients of the sum of `output` with respect to each of `inputs`.
 inline std::vector<Var> grad(const Var& output, const std::vector<Var>& inputs, GradOptions options = {}) {
   return grad(std::vector<Var>{output}, std::vector<Var>{Var()}, inputs, options);
 }

@@ -1,6 +1,5 @@
-// A Var is a tensor in a graph of operations. An operation records its inputs and a rule that turns the
-// gradient of its output into gradients of its inputs. The rule is written in Vars, so a gradient can be
-// differentiated again.
+// A Var is a tensor in a computation graph. Each operation records its inputs and a vector-Jacobian product,
+// itself written in Vars, so that gradients can be differentiated again.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -15,21 +14,21 @@ namespace motiongan {
 class Var;
 struct Node;
 
-/// Which inputs of an operation need a gradient; the others' are not computed.
+/// Which inputs of an operation need a gradient; the others are skipped.
 using Needs = std::vector<bool>;
 
-/// Vector-Jacobian product: gradient of the output in, gradients of the inputs out (an empty Var means zero).
+/// Vector-Jacobian product: maps the gradient of the output to those of the inputs (an empty Var means zero).
 using Vjp = std::function<std::vector<Var>(const Node& self, const Var& gradient, const Needs& needs)>;
 
-/// A value in the graph; copies mean the same value.
+/// A value in the graph; copies refer to the same value.
 class Var {
  public:
   Var() = default;
   explicit Var(std::shared_ptr<Node> node) : node_(std::move(node)) {}
 
-  /// A value that no gradient is wanted for.
+  /// A value without gradient.
   static Var constant(Tensor value);
-  /// A leaf that gradients are wanted for: a parameter, or an input to differentiate by.
+  /// A leaf with gradient: a parameter, or an input to differentiate with respect to.
   static Var leaf(Tensor value);
 
   bool empty() const { return node_ == nullptr; }
@@ -39,7 +38,7 @@ class Var {
   std::size_t size() const { return value().size(); }
   const Context& context() const { return value().context(); }
   bool requires_grad() const;
-  /// The same value, cut from the graph.
+  /// The same value without its graph; no gradient flows through it.
   Var detach() const { return constant(value()); }
   double item() const { return value().item(); }
 
@@ -50,21 +49,21 @@ class Var {
   std::shared_ptr<Node> node_;
 };
 
-/// One value and how it was made.
+/// One value and the operation that computed it.
 struct Node : std::enable_shared_from_this<Node> {
   Tensor value;
   std::vector<Var> inputs;  ///< empty for leaves and constants
   Vjp vjp;
   const char* operation = "constant";
   bool requires_grad = false;
-  std::size_t id = next_id();  ///< grows with creation: inputs have smaller ids than what is made of them
+  std::size_t id = next_id();  ///< increases with creation: a node's id is larger than its inputs'
 
   Node() = default;
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
   ~Node() {
-    // Iterative: the chain of an LSTM over many steps would overflow the stack. A node that an operation uses
-    // twice is held here twice, and goes with the second hold.
+    // Iterative: recursion through an LSTM of many steps would overflow the stack. A node used twice is held
+    // here twice and released with the second hold.
     std::vector<std::shared_ptr<Node>> held;
     const auto take_inputs = [&held](Node& node) {
       for (Var& input : node.inputs)
@@ -110,7 +109,7 @@ inline bool& recording() {
 }
 }  // namespace detail
 
-/// While one lives, operations of this thread compute values only: nothing is recorded.
+/// While an object of this class exists, operations of this thread record no graph.
 class NoGrad {
  public:
   explicit NoGrad(bool off = true) : before_(detail::recording()) { detail::recording() = before_ && !off; }
@@ -122,8 +121,8 @@ class NoGrad {
   bool before_;
 };
 
-/// Makes the result of an operation: `value`, computed from `inputs` (some may be empty), with its
-/// derivative. Records nothing where no input needs a gradient or NoGrad is in force.
+/// The result of an operation: `value`, computed from `inputs` (some may be empty), with its vector-Jacobian
+/// product. Records nothing if no input needs a gradient or NoGrad is in force.
 inline Var record(const char* operation, std::vector<Var> inputs, Tensor value, Vjp vjp) {
   Var out = Var::constant(std::move(value));
   if (!detail::recording()) return out;

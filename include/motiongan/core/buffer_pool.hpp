@@ -1,5 +1,4 @@
-// Device buffers that are kept when they are given back, so that a training step in steady state allocates
-// nothing.
+// A pool that caches freed device buffers, so that a steady-state training step allocates nothing.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -11,31 +10,32 @@
 
 namespace motiongan {
 
-/// What a Context has done so far; the counters only grow, the byte counts are of this moment.
+/// Statistics of a Context: counters since it was made, and current byte counts.
 struct ContextStatistics {
-  std::size_t allocations = 0;   ///< buffers asked of the driver
-  std::size_t reads = 0;         ///< read-backs from device to host (each waits for the queue)
-  std::size_t writes = 0;        ///< uploads from host to device
+  std::size_t allocations = 0;   ///< buffers allocated by the driver
+  std::size_t reads = 0;         ///< copies from device to host (each waits for the queue)
+  std::size_t writes = 0;        ///< copies from host to device
   std::size_t launches = 0;      ///< kernels enqueued
-  double gemm_flops = 0;         ///< multiplications and additions in matrix products
+  double gemm_flops = 0;         ///< floating-point operations in matrix products
   std::size_t bytes_in_use = 0;  ///< in live tensors
-  std::size_t bytes_cached = 0;  ///< in buffers that wait to be used again
-  std::size_t peak_bytes = 0;    ///< most that was ever in use and cached together
+  std::size_t bytes_cached = 0;  ///< in free buffers of the pool
+  std::size_t peak_bytes = 0;    ///< maximum of bytes_in_use + bytes_cached
 };
 
 namespace detail {
 
-/// Hands out buffers by size. A returned buffer may be handed out at once: the queue runs in order, so
-/// whatever still reads it has run before its next owner writes it.
+/// Hands out buffers by size. A returned buffer can be reused at once: the queue runs in order, so every
+/// kernel that still reads it finishes before its next owner writes to it.
 class BufferPool {
  public:
   BufferPool(cl_context context, std::size_t limit, std::size_t max_allocation, ContextStatistics& statistics)
       : context_(context), limit_(limit), max_allocation_(max_allocation), statistics_(statistics) {}
 
-  /// A buffer of at least `bytes`; `granted` is set to its size.
+  /// A buffer of at least `bytes`; `granted` receives its size. Throws Error if the memory limit, or the
+  /// largest allocation of the device, would be exceeded.
   ClBuffer take(std::size_t bytes, std::size_t& granted) {
     granted = round_up(bytes);
-    // A slightly larger buffer serves too; a much larger one would waste what somebody else needs.
+    // A slightly larger buffer will do; a much larger one would waste memory.
     if (const auto found = free_.lower_bound(granted);
         found != free_.end() && found->first <= granted + granted / 4) {
       granted = found->first;
@@ -46,21 +46,21 @@ class BufferPool {
       return buffer;
     }
     if (granted > max_allocation_)
-      throw Error("out of device memory: one buffer of ", mega(bytes), " was asked, the device allows ",
+      throw Error("out of device memory: one buffer of ", mega(bytes), " requested, the device allows ",
                   mega(max_allocation_), " in one allocation; use a smaller batch or fewer frames");
     if (statistics_.bytes_in_use + statistics_.bytes_cached + granted > limit_) trim();
     if (statistics_.bytes_in_use + granted > limit_)
-      throw Error("out of device memory: ", mega(bytes), " was asked, ", mega(statistics_.bytes_in_use),
-                  " are in use of a limit of ", mega(limit_),
+      throw Error("out of device memory: ", mega(bytes), " requested, ", mega(statistics_.bytes_in_use),
+                  " already in use, limit ", mega(limit_),
                   "; use a smaller batch, or raise ContextOptions::memory_limit or MOTIONGAN_MEMORY_MB");
     cl_int code = CL_SUCCESS;
     cl_mem memory = clCreateBuffer(context_, CL_MEM_READ_WRITE, granted, nullptr, &code);
-    if (code != CL_SUCCESS) {  // the driver may be short of memory that the pool holds
+    if (code != CL_SUCCESS) {  // the pool may be caching memory that the driver needs
       trim();
       memory = clCreateBuffer(context_, CL_MEM_READ_WRITE, granted, nullptr, &code);
     }
-    check_cl(code, "clCreateBuffer", ": ", mega(bytes), " was asked, ", mega(statistics_.bytes_in_use),
-             " are in use of a limit of ", mega(limit_));
+    check_cl(code, "clCreateBuffer", ": ", mega(bytes), " requested, ", mega(statistics_.bytes_in_use),
+             " already in use, limit ", mega(limit_));
     ++statistics_.allocations;
     statistics_.bytes_in_use += granted;
     statistics_.peak_bytes =
@@ -74,7 +74,7 @@ class BufferPool {
     free_.emplace(granted, std::move(buffer));
   }
 
-  /// Releases every buffer that is not in use.
+  /// Releases all free buffers to the driver.
   void trim() {
     free_.clear();
     statistics_.bytes_cached = 0;

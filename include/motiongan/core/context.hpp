@@ -1,4 +1,4 @@
-// A Context is one device, its queue, its programs and its buffers. Everything on the device goes through it.
+// Context: one OpenCL device with its command queue, kernel programs and buffer pool.
 #pragma once
 #include <array>
 #include <chrono>
@@ -18,25 +18,25 @@
 namespace motiongan {
 
 struct ContextOptions {
-  std::string device = {};  ///< as MOTIONGAN_DEVICE, which it overrides when not empty
+  std::string device = {};  ///< see choose_device; empty: MOTIONGAN_DEVICE
   Precision precision = Precision::f32;
-  std::size_t memory_limit = 0;  ///< bytes; 0: MOTIONGAN_MEMORY_MB, else what the device reports
+  std::size_t memory_limit = 0;  ///< bytes; 0: MOTIONGAN_MEMORY_MB, else the device's global memory
   bool verbose = false;          ///< print the chosen device to standard error
 };
 
-/// A number in the Context's own type, as a kernel argument.
+/// A scalar kernel argument, converted to the Context's precision.
 struct KernelReal {
   double value;
 };
 
-/// The grid of a launch. Local sizes are fixed per kernel: PoCL compiles a kernel anew for each one.
+/// Global and local sizes of a launch. Local sizes are fixed per kernel: PoCL recompiles for each new one.
 struct LaunchGrid {
   cl_uint dimensions;
   std::array<std::size_t, 3> global, local;
 
-  /// At least `n` work-items in one dimension, in groups of 64; kernels skip those past n.
+  /// At least `n` work-items in one dimension, in work-groups of 64; kernels skip those past n.
   static LaunchGrid items(std::size_t n) { return {1, {(n + 63) / 64 * 64, 1, 1}, {64, 1, 1}}; }
-  /// One work-item per group, for kernels that do a tile of work each.
+  /// x * y * z work-groups of one work-item, for kernels that process one tile each.
   static LaunchGrid groups(std::size_t x, std::size_t y = 1, std::size_t z = 1) {
     return {3, {x, y, z}, {1, 1, 1}};
   }
@@ -46,7 +46,7 @@ class Context;
 
 namespace detail {
 
-/// The arguments of one launch, set in order.
+/// Sets the arguments of one launch, in order.
 struct KernelArguments {
   cl_kernel kernel;
   Precision precision;
@@ -85,7 +85,7 @@ struct ContextState {
   std::unique_ptr<BufferPool> pool;
   std::unique_ptr<ProgramCache> programs;
 
-  /// Uploads do not wait for the queue: the data rest in one of these until they have been copied.
+  /// Uploads do not wait for the queue: each keeps its data in one of these until the copy has finished.
   struct Staging {
     std::vector<std::byte> bytes;
     ClEvent copied;
@@ -108,7 +108,7 @@ struct ContextState {
   }
 };
 
-/// A pool buffer with an owner; goes back to the pool with its last tensor.
+/// A pool buffer shared by tensors; returns to the pool with the last of them.
 class Storage {
  public:
   Storage(std::shared_ptr<ContextState> state, std::size_t bytes)
@@ -126,13 +126,15 @@ class Storage {
 
 }  // namespace detail
 
-/// One device with its queue, programs and buffer pool; a cheap handle, copies mean the same context.
+/// One device with its queue, programs and buffer pool. A cheap handle: copies share one context.
 /// Not thread-safe: use one Context per thread.
 class Context {
  public:
-  /// The device of MOTIONGAN_DEVICE (see choose_device), in float.
+  /// The device of MOTIONGAN_DEVICE (see choose_device), in single precision.
   Context() : Context(ContextOptions{}) {}
 
+  /// Throws Error if no device matches, the device lacks the requested precision, MOTIONGAN_MEMORY_MB is
+  /// invalid or an OpenCL call fails.
   explicit Context(const ContextOptions& options) : state_(std::make_shared<detail::ContextState>()) {
     auto& s = *state_;
     s.device = options.device.empty() ? default_device() : choose_device(all_devices(), options.device);
@@ -154,7 +156,7 @@ class Context {
       const auto [end, error] = std::from_chars(megabytes, megabytes + std::strlen(megabytes), limit);
       require(error == std::errc() && *end == '\0' && limit > 0 &&
                   limit <= std::numeric_limits<std::size_t>::max() / 1'000'000,
-              "MOTIONGAN_MEMORY_MB=\"", megabytes, "\" is not a positive whole number of megabytes");
+              "MOTIONGAN_MEMORY_MB is \"", megabytes, "\", expected a positive whole number of megabytes");
       limit *= 1'000'000;
     }
     s.pool = std::make_unique<detail::BufferPool>(s.context.get(), limit ? limit : s.device.global_memory,
@@ -165,12 +167,12 @@ class Context {
 
   const Device& device() const { return state_->device; }
   Precision precision() const { return state_->precision; }
-  /// Bytes of one number: 4 or 8.
+  /// Bytes per element: 4 or 8.
   std::size_t real_size() const { return state_->precision == Precision::f64 ? 8 : 4; }
   unsigned vector_width() const { return state_->programs->vector_width(); }
   cl_command_queue queue() const { return state_->queue.get(); }
   const ContextStatistics& statistics() const { return state_->statistics; }
-  /// Counts the arithmetic of a matrix product; benchmarks put it beside the device's peak.
+  /// Adds to statistics().gemm_flops, which benchmarks compare with the device's peak.
   void count_gemm_flops(double flops) const { state_->statistics.gemm_flops += flops; }
   bool operator==(const Context& other) const { return state_ == other.state_; }
 
@@ -182,6 +184,7 @@ class Context {
                   state_->precision == Precision::f64 ? "double" : "float");
   }
 
+  /// An uninitialised buffer from the pool. Throws Error if the memory limit would be exceeded.
   std::shared_ptr<detail::Storage> allocate(std::size_t bytes) const {
     return std::make_shared<detail::Storage>(state_, bytes);
   }
@@ -189,11 +192,12 @@ class Context {
   /// Releases cached buffers to the driver.
   void trim() const { state_->pool->trim(); }
 
-  /// Waits until everything enqueued has run.
+  /// Waits until all enqueued work has finished.
   void finish() const { check_cl(clFinish(queue()), "clFinish"); }
 
-  /// Enqueues kernel `name` of cl/<file>.cl. Tensors become two arguments (buffer, first element),
-  /// std::size_t a cl_uint, KernelReal a number of the context's type.
+  /// Enqueues kernel `name` of cl/<file>.cl. A Tensor becomes two arguments (buffer, first element), a
+  /// std::size_t a cl_uint, a KernelReal a scalar of the context's precision. An empty grid launches nothing.
+  /// Throws Error if the kernel does not build or an OpenCL call fails.
   template <class... Arguments>
   void launch(const char* file, const char* name, const LaunchGrid& grid, const Arguments&... arguments) const {
     if (grid.global[0] == 0 || grid.global[1] == 0 || grid.global[2] == 0) return;
@@ -211,7 +215,7 @@ class Context {
     if (event) record_time(name, ClEvent(event));
   }
 
-  /// Copies `bytes` to the device without waiting for the queue; `data` may be changed afterwards.
+  /// Copies `bytes` to the device without waiting for the queue; `data` may be reused on return.
   void write(cl_mem buffer, std::size_t byte_offset, const void* data, std::size_t bytes) const {
     if (bytes == 0) return;
     ++state_->statistics.writes;
@@ -229,7 +233,7 @@ class Context {
     slot.copied = ClEvent(event);
   }
 
-  /// Copies `bytes` to the host; waits for everything enqueued before.
+  /// Copies `bytes` to the host; waits for all work enqueued before.
   void read(cl_mem buffer, std::size_t byte_offset, void* data, std::size_t bytes) const {
     if (bytes == 0) return;
     ++state_->statistics.reads;

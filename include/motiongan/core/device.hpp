@@ -1,4 +1,4 @@
-// Finding OpenCL devices over all platforms and choosing one of them.
+// Enumerating and choosing OpenCL devices.
 #pragma once
 #include <cctype>
 #include <charconv>
@@ -11,18 +11,18 @@
 
 namespace motiongan {
 
-/// One OpenCL device and what the library asks of it.
+/// One OpenCL device and its properties.
 struct Device {
   cl_platform_id platform = nullptr;
   cl_device_id id = nullptr;
-  std::string name;           ///< as the driver spells it
+  std::string name;           ///< as reported by the driver
   std::string platform_name;  ///< "Portable Computing Language", "NVIDIA CUDA", ...
   std::string version;        ///< the device's OpenCL version string
   cl_device_type type = 0;
   cl_uint compute_units = 0;
   cl_ulong global_memory = 0;      ///< bytes
   cl_ulong max_allocation = 0;     ///< bytes in one buffer
-  cl_uint native_float_width = 1;  ///< floats in one vector register
+  cl_uint native_float_width = 1;  ///< floats per vector register
   bool has_double = false;
 
   bool is_cpu() const { return (type & CL_DEVICE_TYPE_CPU) != 0; }
@@ -55,7 +55,7 @@ inline std::string lower(std::string_view text) {
 
 }  // namespace detail
 
-/// Every OpenCL device of every platform, in the loader's order. Empty when there is none.
+/// All OpenCL devices of all platforms, in the ICD loader's order; empty if there are none.
 inline std::vector<Device> all_devices() {
   std::vector<Device> found;
   cl_uint platform_count = 0;
@@ -64,7 +64,7 @@ inline std::vector<Device> all_devices() {
   check_cl(clGetPlatformIDs(platform_count, platforms.data(), nullptr), "clGetPlatformIDs");
   for (cl_platform_id platform : platforms) {
     cl_uint count = 0;
-    // A platform without devices answers CL_DEVICE_NOT_FOUND: that is no reason to stop the search.
+    // A platform without devices returns CL_DEVICE_NOT_FOUND; skip it.
     if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 0, nullptr, &count) != CL_SUCCESS) continue;
     std::vector<cl_device_id> ids(count);
     if (clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, count, ids.data(), nullptr) != CL_SUCCESS) continue;
@@ -93,15 +93,15 @@ inline std::vector<Device> all_devices() {
   return found;
 }
 
-/// Chooses among `devices` by `wish`: "" (a GPU if there is one, else the first), "cpu", "gpu", a part of the
-/// device's or platform's name in any case, or any of these followed by ":index" to take a later match.
-/// Throws an Error that lists what there is when nothing fits.
+/// Chooses one of `devices` by `wish`: "" (the first GPU, else the first device), "cpu", "gpu" or part of the
+/// device or platform name (case-insensitive), optionally followed by ":index" (from 0) to take a later
+/// match. Throws Error, listing the devices, if none matches.
 inline Device choose_device(const std::vector<Device>& devices, std::string_view wish) {
   if (devices.empty())
     throw Error(
         "no OpenCL device found: install a driver (on Debian for the CPU: apt install pocl-opencl-icd; for a "
         "GPU: its vendor's OpenCL "
-        "package) and see that `clinfo -l` lists it");
+        "package) and check that `clinfo -l` lists it");
   std::string kind = detail::lower(wish);
   std::size_t index = 0;
   if (const auto colon = kind.rfind(':'); colon != std::string::npos) {
@@ -110,7 +110,7 @@ inline Device choose_device(const std::vector<Device>& devices, std::string_view
     if (code == std::errc() && stop == end)
       kind.resize(colon);
     else
-      index = 0;  // the colon belongs to a name
+      index = 0;  // the colon is part of the name
   }
   std::vector<Device> matches;
   for (const Device& d : devices) {
@@ -133,10 +133,11 @@ inline Device choose_device(const std::vector<Device>& devices, std::string_view
                                 : "other",
                    "  ", d.name, "  (", d.platform_name, ")");
   throw Error("no OpenCL device matches \"", wish, "\" (", matches.size(), " match the name, index ", index,
-              " was asked); use cpu, gpu, a part of a name, or NAME:index. There are:", list);
+              " requested); use cpu, gpu, part of a name, or NAME:index. Available devices:", list);
 }
 
-/// The device that MOTIONGAN_DEVICE names, or the best one when it is unset.
+/// The device that MOTIONGAN_DEVICE names, or that of choose_device("") if it is unset. Throws Error if none
+/// matches.
 inline Device default_device() {
   const char* wish = std::getenv("MOTIONGAN_DEVICE");
   return choose_device(all_devices(), wish ? wish : "");

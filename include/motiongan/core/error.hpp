@@ -1,4 +1,4 @@
-// The exceptions of the library, and how their messages are put together.
+// The library's exceptions and the formatting of their messages.
 #pragma once
 #include <concepts>
 #include <cstddef>
@@ -13,8 +13,8 @@ namespace motiongan {
 
 namespace detail {
 
-/// A piece of a message, by its kind: so that putting messages together is compiled once, and not for every
-/// list of argument types. Refers to what it is made of.
+/// One part of a message, type-erased, so that formatting is compiled once and not for every list of argument
+/// types. Refers to its argument.
 class MessagePart {
  public:
   MessagePart(const char* text) : text_(text), kind_(Kind::text) {}
@@ -33,7 +33,7 @@ class MessagePart {
   }
   /// A shape: "[32, 64, 93]".
   MessagePart(const std::vector<std::size_t>& list) : list_(&list), kind_(Kind::list) {}
-  /// Anything else that can be printed to a stream.
+  /// Any other type with operator<<.
   template <class T>
     requires(!std::is_arithmetic_v<T> && !std::convertible_to<T, std::string_view>)
   MessagePart(const T& value)
@@ -93,20 +93,20 @@ inline std::string message_of(std::initializer_list<MessagePart> parts) {
 
 }  // namespace detail
 
-/// Joins its arguments as they would be printed to a stream: `concat("row ", 3, " of ", n)`.
+/// Joins its arguments as printed to a stream: `concat("row ", 3, " of ", n)`.
 template <class... Parts>
 std::string concat(const Parts&... parts) {
   return detail::message_of({detail::MessagePart(parts)...});
 }
 
-/// What the library throws. The message says what was found, what was expected and what to do.
+/// The library's exception. The message says what was found, what was expected and what to do.
 class Error : public std::runtime_error {
  public:
   template <class... Parts>
   explicit Error(const Parts&... parts) : std::runtime_error(concat(parts...)) {}
 };
 
-/// A training whose losses or weights are no longer finite numbers.
+/// Training diverged: a loss or a weight is no longer finite.
 class DivergedError : public Error {
  public:
   using Error::Error;
@@ -118,8 +118,8 @@ namespace detail {
 }
 }  // namespace detail
 
-/// Throws Error made of `parts` unless `condition` holds. The message is put together only then: pass values
-/// (a shape too), not strings made of them, where the call is on a hot path.
+/// Throws Error with the joined `parts` unless `condition` holds. The message is formatted only then: on a
+/// hot path pass values (a shape too), not strings built from them.
 template <class... Parts>
 void require(bool condition, const Parts&... parts) {
   if (!condition) [[unlikely]]

@@ -1,4 +1,4 @@
-// The one matrix product of the library: our kernel on CPU devices, CLBlast on others.
+// Matrix products: the library's own kernels on CPU devices, CLBlast on all others.
 #pragma once
 #include <cstdlib>
 #include <string_view>
@@ -8,13 +8,13 @@
 
 namespace motiongan {
 
-/// Who multiplies: `automatic` is what MOTIONGAN_GEMM ("native" or "clblast") names, else native on CPU
-/// devices and CLBlast on others.
+/// Which backend multiplies. `automatic`: the one that MOTIONGAN_GEMM ("native" or "clblast") names, else
+/// native on CPU devices and CLBlast on all others.
 enum class GemmEngine { automatic, native, clblast };
 
 namespace detail {
 
-/// What MOTIONGAN_GEMM asks for; read once.
+/// The value of MOTIONGAN_GEMM, read once.
 inline GemmEngine gemm_engine_wish() {
   static const GemmEngine wish = [] {
     const char* text = std::getenv("MOTIONGAN_GEMM");
@@ -22,12 +22,12 @@ inline GemmEngine gemm_engine_wish() {
     if (name.empty()) return GemmEngine::automatic;
     if (name == "native") return GemmEngine::native;
     if (name == "clblast") return GemmEngine::clblast;
-    throw Error("MOTIONGAN_GEMM=\"", name, "\" names no engine: use native or clblast, or leave it unset");
+    throw Error("MOTIONGAN_GEMM is \"", name, "\", expected native or clblast; or leave it unset");
   }();
   return wish;
 }
 
-/// Values of p that the native kernels pack at once: BLOCK of cl/gemm.cl.
+/// Values of p that the native kernels pack at once: BLOCK in cl/gemm_tiles.cl.
 inline std::size_t gemm_block(const Context& context) { return context.device().is_cpu() ? 768 : 32; }
 
 inline GemmEngine choose_engine(const Context& context, GemmEngine engine) {
@@ -39,15 +39,16 @@ inline GemmEngine choose_engine(const Context& context, GemmEngine engine) {
 
 }  // namespace detail
 
-/// B of a product that comes again and again, in the order in which the native engine reads it, segment after
-/// segment; empty where another engine multiplies. Takes m, a and c of the call for unknown. To be made anew
-/// when B changes.
+/// Packs the B of a repeated product into the order in which the native backend reads it, segment after
+/// segment, for GemmCall::b_panels: [segments * panels, k, 2 * vector width]. Empty on other backends.
+/// Ignores m, a and c of the call; must be repeated when B changes. Throws Error for a batch, an empty B or a
+/// B outside its tensor.
 inline Tensor pack_b(const Context& context, const GemmCall& call,
                      GemmEngine engine = GemmEngine::automatic) {
   if (detail::choose_engine(context, engine) != GemmEngine::native) return {};
   require(call.segments >= 1 && call.segments <= 4 && call.batch == 1 && call.n > 0 && call.k > 0 &&
               !call.b.empty(),
-          "pack_b: a B of 1 to 4 segments and at least one row and column expected, no batch");
+          "pack_b: expected 1 to 4 segments, batch 1 and a B with at least one row and column");
   const std::size_t columns = 2 * context.vector_width(), panels = detail::gemm_panels(context, call);
   const std::size_t block = detail::gemm_block(context), size = panels * call.k * columns;
   Tensor packed(context, {call.segments * panels, call.k, columns});
@@ -62,9 +63,9 @@ inline Tensor pack_b(const Context& context, const GemmCall& call,
   return packed;
 }
 
-/// Enqueues the product. Throws an Error with the sizes when something does not lie inside its tensor. With k
-/// = 0 the sum is what it starts from. On the native engine an element's value does not depend on m, n or the
-/// batch.
+/// Enqueues the product. With k = 0 the sum keeps its initial value. On the native backend an element's value
+/// does not depend, bit for bit, on m, n or the batch. Throws Error, with all sizes, if an operand does not
+/// lie inside its tensor.
 inline void gemm(const Context& context, const GemmCall& call, GemmEngine engine = GemmEngine::automatic) {
   detail::check_gemm(context, call);
   if (call.m == 0 || call.n == 0 || call.batch == 0) return;

@@ -1,4 +1,4 @@
-// What a matrix product is given, and the checks that it lies inside its tensors.
+// The description of a matrix product and its bounds checks.
 #pragma once
 #include <array>
 #include <limits>
@@ -8,37 +8,35 @@
 
 namespace motiongan {
 
-/// One product, row-major everywhere:
-/// C[m,n] = epilogue((accumulate ? C : 0) + sum over segments s of A_s[m,k] * B_s[k,n]), for each of `batch`
-/// problems. C must not overlap A, B or the residual.
+/// A batch of matrix products, all row-major:
+/// C[m,n] = epilogue((accumulate ? C : 0) + sum over segments s of A_s[m,k] * B_s[k,n]).
+/// The elements of C must not overlap those of A, B or the residual.
 struct GemmCall {
   std::size_t m = 0, n = 0, k = 0;
   /// Element (i, p) of A is at a_offset[s] + i * a_ld + p or, when a_transposed, at a_offset[s] + p * a_ld +
   /// i. Element (p, j) of B is at b_offset[s] + p * b_ld + j or, when b_transposed, at b_offset[s] + j * b_ld
   /// + p. Element (i, j) of C is at c_offset + i * c_ld + j.
   Tensor a = {}, b = {}, c = {};
-  std::size_t a_ld = 0, b_ld = 0, c_ld = 0;  ///< distance of two stored rows, in elements
+  std::size_t a_ld = 0, b_ld = 0, c_ld = 0;  ///< distance between stored rows, in elements
   bool a_transposed = false, b_transposed = false;
-  std::size_t segments = 1;  ///< products that are summed, 1 to 4: the taps of a convolution
+  std::size_t segments = 1;  ///< products summed, 1 to 4 (taps of a convolution)
   std::array<std::size_t, 4> a_offset{}, b_offset{};
   std::size_t c_offset = 0;
   std::size_t batch = 1, a_batch_stride = 0, b_batch_stride = 0, c_batch_stride = 0;
-  bool accumulate = false;  ///< start from what C holds
-  /// B once more, as pack_b() returned it for this product's b, b_offset, b_ld, b_transposed, n, k and
-  /// segments; or empty. Saves reading B in its own order time after time; changes no bit. Not for batches or
-  /// a transposed A.
+  bool accumulate = false;  ///< add to the present content of C
+  /// B packed by pack_b() for the same b, b_offset, b_ld, b_transposed, n, k and segments; or empty. Saves
+  /// packing B for every product and gives bit-identical results. Not for batches or a transposed A.
   Tensor b_panels = {};
-  /// Applied to the sum in this order: + bias[j], + residual[residual_offset + i * residual_ld + j], ReLU.
-  Tensor bias = {}, residual = {};  ///< absent when empty; the same for every problem of the batch
+  /// The epilogue, in this order: + bias[j], + residual[residual_offset + i * residual_ld + j], ReLU.
+  Tensor bias = {}, residual = {};  ///< optional; shared by all problems of the batch
   std::size_t residual_offset = 0, residual_ld = 0;
   bool relu = false;
-  /// Where the ReLU of C is wanted beside C: m * n numbers from rectified_offset on. Not for batches, and C
-  /// without gaps (c_ld = n).
+  /// Optional second output, ReLU(C): m * n elements from rectified_offset. Needs batch 1 and c_ld = n.
   Tensor rectified = {};
   std::size_t rectified_offset = 0;
 };
 
-/// The head of every message about a product.
+/// Prints the sizes of a product, the start of every error message about it.
 inline std::ostream& operator<<(std::ostream& out, const GemmCall& g) {
   return out << "gemm m=" << g.m << " n=" << g.n << " k=" << g.k << " a_ld=" << g.a_ld
              << (g.a_transposed ? " (transposed)" : "") << " b_ld=" << g.b_ld
@@ -48,7 +46,7 @@ inline std::ostream& operator<<(std::ostream& out, const GemmCall& g) {
 
 namespace detail {
 
-// The flags of the kernels in cl/gemm.cl.
+// Flags of the kernels in cl/gemm_tiles.cl and cl/gemm_packed.cl.
 constexpr cl_uint gemm_accumulate = 1, gemm_bias = 2, gemm_residual = 4, gemm_relu = 8, gemm_rectify = 16;
 
 inline cl_uint gemm_flags(const GemmCall& g) {
@@ -56,7 +54,7 @@ inline cl_uint gemm_flags(const GemmCall& g) {
          (g.residual.empty() ? 0 : gemm_residual) | (g.relu ? gemm_relu : 0);
 }
 
-/// A tensor's shape, made into text only when a message is.
+/// A tensor's shape, formatted only if a message is.
 struct ShapeOf {
   const Tensor& tensor;
   friend std::ostream& operator<<(std::ostream& out, const ShapeOf& shape) {
@@ -64,7 +62,7 @@ struct ShapeOf {
   }
 };
 
-/// Refuses a matrix that does not lie inside its tensor.
+/// Throws Error unless the matrix lies inside its tensor.
 inline void check_matrix(const GemmCall& g, const char* name, const Tensor& tensor, std::size_t offset,
                          std::size_t rows, std::size_t columns, std::size_t ld, std::size_t batch_stride) {
   if (rows == 0 || columns == 0 || g.batch == 0) return;
@@ -91,7 +89,7 @@ inline void check_gemm(const Context& context, const GemmCall& g) {
   require(g.batch <= 1 || g.c_batch_stride >= c_size || (g.m > 1 && g.c_batch_stride >= g.n) || g.m == 0, g,
           ": the problems of the batch overlap in C: c_batch_stride is ", g.c_batch_stride);
   if (!g.bias.empty())
-    require(g.bias.size() == g.n, g, ": bias has shape ", ShapeOf{g.bias}, ", n elements expected");
+    require(g.bias.size() == g.n, g, ": bias has shape ", ShapeOf{g.bias}, ", expected n elements");
   if (!g.residual.empty() && g.m > 0) {
     const std::size_t end = g.residual_offset + (g.m - 1) * g.residual_ld + g.n;
     require(end <= g.residual.size(), g, ": the residual (leading dimension ", g.residual_ld, ", offset ",
@@ -99,11 +97,11 @@ inline void check_gemm(const Context& context, const GemmCall& g) {
             g.residual.size());
   }
   if (!g.b_panels.empty())
-    require(g.batch == 1 && !g.a_transposed, g, ": a packed B is for no batch and A not transposed");
+    require(g.batch == 1 && !g.a_transposed, g, ": a packed B needs batch 1 and an A that is not transposed");
   if (!g.rectified.empty())
     require(g.batch == 1 && g.c_ld == g.n && g.rectified_offset + g.m * g.n <= g.rectified.size(), g,
-            ": ReLU beside C is for no batch and rows of C without gaps, and needs ", g.m * g.n,
-            " numbers from ", g.rectified_offset, " of a tensor ", ShapeOf{g.rectified});
+            ": rectified needs batch 1, c_ld = n and ", g.m * g.n, " elements from ", g.rectified_offset,
+            "; its tensor has shape ", ShapeOf{g.rectified});
   for (const Tensor* tensor : {&g.a, &g.b, &g.c, &g.bias, &g.residual, &g.rectified})
     require(tensor->empty() || tensor->context() == context, g, ": a tensor belongs to another context");
 }

@@ -1,20 +1,20 @@
-// The CLBlast engine of gemm(): a library of products tuned for GPUs.
+// The CLBlast backend of gemm(), tuned for GPUs.
 #pragma once
 #include <algorithm>
 
 #include "motiongan/core/gemm_call.hpp"
 
-// After OpenCL's headers, which ours ask for version 1.2.
+// Must follow opencl.hpp, which sets the OpenCL target version to 1.2.
 #include <clblast_c.h>
 
 namespace motiongan::detail {
 
-/// The leading dimension as CLBlast wants it: at least the row's length, also where there is only one row.
+/// CLBlast requires a leading dimension of at least the row length, even for a single row.
 inline std::size_t clblast_ld(std::size_t rows, std::size_t columns, std::size_t ld) {
   return rows <= 1 ? std::max(ld, columns) : ld;
 }
 
-/// CLBlast refuses empty products and matrices whose rows overlap: these go to the native kernel.
+/// CLBlast rejects empty products and matrices whose rows overlap; the native kernel handles these.
 inline bool clblast_can(const GemmCall& g) {
   const auto rows_apart = [](bool transposed, std::size_t rows, std::size_t columns, std::size_t ld) {
     if (transposed) std::swap(rows, columns);
@@ -24,7 +24,7 @@ inline bool clblast_can(const GemmCall& g) {
          rows_apart(g.b_transposed, g.k, g.n, g.b_ld);
 }
 
-/// One CLBlast call per segment, each adding to the one before, then the epilogue in a kernel of ours.
+/// One CLBlast call per segment, accumulating into C, then the epilogue in the library's own kernel.
 inline void gemm_clblast(const Context& context, const GemmCall& g) {
   const std::size_t a_ld = clblast_ld(g.a_transposed ? g.k : g.m, g.a_transposed ? g.m : g.k, g.a_ld);
   const std::size_t b_ld = clblast_ld(g.b_transposed ? g.n : g.k, g.b_transposed ? g.k : g.n, g.b_ld);

@@ -1,4 +1,4 @@
-// Our own engine of gemm(): the kernel of cl/gemm.cl, made for CPU devices.
+// The native backend of gemm(): the kernels of cl/gemm.cl and cl/gemm_packed.cl, written for CPU devices.
 #pragma once
 #include <algorithm>
 
@@ -6,14 +6,14 @@
 
 namespace motiongan::detail {
 
-/// Panels of two vectors' columns that B is cut into.
+/// Number of column panels of B, each two vectors wide.
 inline std::size_t gemm_panels(const Context& context, const GemmCall& g) {
   const std::size_t columns = 2 * context.vector_width();
   return (g.n + columns - 1) / columns;
 }
 
-/// How the native kernel's work is cut: rows and panels (of two vectors' columns) of one work-group, and the
-/// values of p it packs at a time. None of these changes a bit of the result.
+/// How the native kernel divides its work: rows and panels per work-group, and panels packed at once. None of
+/// these changes a bit of the result.
 struct GemmSplit {
   std::size_t rows, panels, panels_at_once;
 };
@@ -21,29 +21,29 @@ struct GemmSplit {
 inline GemmSplit split_gemm(const Context& context, const GemmCall& g) {
   const std::size_t tile = context.vector_width() * context.real_size() == 64 ? 12 : 6;
   const std::size_t panels = gemm_panels(context, g);
-  // Several groups per core end together even when one core comes late; few rows per group would not pay for
-  // packing.
+  // Several groups per core balance the load even if one core starts late; groups of too few rows would not
+  // amortise packing.
   const std::size_t wanted = 8 * context.device().compute_units;
   const std::size_t columns_of_groups = std::max<std::size_t>(1, panels * g.batch);
   const std::size_t rows_of_groups = (wanted + columns_of_groups - 1) / columns_of_groups;
   std::size_t rows =
       std::max((g.m + rows_of_groups - 1) / rows_of_groups, std::min<std::size_t>(g.m, 8 * tile));
   rows = (rows + tile - 1) / tile * tile;
-  // For few rows most of the time goes into reading B: by wide rows, where the columns suffice for every
-  // core.
+  // With few rows, reading B dominates: read it in wide rows if there are enough columns for every core.
   const bool wide = !g.b_transposed && g.m <= 32 && panels * g.batch >= 4 * wanted / 2;
   const std::size_t at_once = wide ? 4 : 1;
   return {rows, at_once, at_once};
 }
 
-/// The same for a packed B: it costs nothing to cut it finely, but that every group reads its panels anew.
+/// The same for a packed B, where fine splits are cheap: each group only reads its panels again.
 inline GemmSplit split_packed(const Context& context, const GemmCall& g) {
   const std::size_t tile = context.vector_width() * context.real_size() == 64 ? 12 : 6;
   const std::size_t panels = gemm_panels(context, g), units = context.device().compute_units;
   const std::size_t wanted = 8 * units;
   if (g.m == 1 && panels >= wanted) return {1, 4, 1};
   if (g.m < 8 * tile) {
-    // PoCL hands out halves of what is left: few groups must be equal, and the same number for each core.
+    // PoCL schedules half of the remaining groups at a time: a few groups must be of equal size, and their
+    // number a multiple of the cores.
     std::size_t row_groups = 1;
     while (panels * row_groups < 3 * units || panels * row_groups % units != 0) ++row_groups;
     return {(g.m + row_groups - 1) / row_groups, 1, 1};
@@ -53,7 +53,7 @@ inline GemmSplit split_packed(const Context& context, const GemmCall& g) {
   return {(rows + tile - 1) / tile * tile, 1, 1};
 }
 
-/// The kernel's Numbers (cl/gemm.cl), field by field.
+/// Mirrors struct Numbers in cl/gemm_tiles.cl, field by field.
 struct GemmNumbers {
   cl_uint m, n, k, segments, flags;
   cl_uint a_first, b_first, c_first, bias_first, residual_first;
@@ -68,7 +68,7 @@ struct GemmNumbers {
 inline void add_argument(KernelArguments& to, const GemmNumbers& numbers) { to.set(numbers); }
 
 inline void launch_gemm(const Context& context, const GemmCall& g) {
-  // What does not fit 32 bits belongs to a dimension of size 1 and is never used, see check_gemm.
+  // Only strides of dimensions of size 1, which are never used, can exceed 32 bits; see check_gemm.
   const auto narrow = [](std::size_t value) { return static_cast<cl_uint>(value); };
   const auto first = [&](const Tensor& t) { return t.empty() ? 0 : narrow(t.offset()); };
   const auto buffer = [&](const Tensor& t) { return t.empty() ? g.c.buffer() : t.buffer(); };
@@ -104,7 +104,7 @@ inline void launch_gemm(const Context& context, const GemmCall& g) {
                  first(g.rectified) + narrow(g.rectified_offset));
 }
 
-/// out[j][i] = x[i][j]; both with rows of their own length.
+/// out[j][i] = x[i][j], each with its own leading dimension.
 inline void launch_transpose(const Context& context, const At& x, std::size_t ld, std::size_t rows,
                         std::size_t columns, const At& out, std::size_t out_ld) {
   const auto pieces = [&](std::size_t n) {
@@ -114,10 +114,10 @@ inline void launch_transpose(const Context& context, const At& x, std::size_t ld
                  out_ld);
 }
 
-/// A transposed A is read by columns, tile after tile and panel after panel. Where its rows are long, each
-/// number of a column lies in a page of its own: then A is turned first; or, where B's rows are shorter and
-/// C is nothing but the product, both change places and C is turned (not where B's rows are whole pages: all
-/// numbers of a column would fall into the same few lines of the cache). The same bits in any case.
+/// A transposed A is read by columns, once per tile and panel. With long rows every element of a column lies
+/// in a different page, so A is transposed first; or, if B has shorter rows and there is no epilogue, A and B
+/// are swapped and C is transposed (unless B's rows are whole pages: all elements of a column would map to
+/// the same few cache lines). The result is bit-identical in every case.
 inline void gemm_native(const Context& context, const GemmCall& wanted) {
   const bool far = wanted.a_transposed && wanted.segments == 1 && wanted.batch == 1 && wanted.a_ld >= 512 &&
                    wanted.m >= 64 && wanted.n >= 64 && wanted.k >= 256;

@@ -1,4 +1,4 @@
-// OpenCL's C interface and the few lines that every user of it needs: error names and owning handles.
+// OpenCL's C API, error names and RAII handles.
 #pragma once
 #ifndef CL_TARGET_OPENCL_VERSION
 #define CL_TARGET_OPENCL_VERSION 120
@@ -12,7 +12,7 @@
 
 namespace motiongan {
 
-/// The name of an OpenCL error code, "CL_OUT_OF_RESOURCES (-5)" for -5.
+/// Name and value of an OpenCL error code: "CL_OUT_OF_RESOURCES (-5)".
 inline std::string opencl_error_name(cl_int code) {
   const auto name = [code]() -> const char* {
     switch (code) {
@@ -77,13 +77,13 @@ inline std::string opencl_error_name(cl_int code) {
   return concat(name, " (", code, ")");
 }
 
-/// Throws an Error that names the call, the code and `details` unless `code` is CL_SUCCESS.
+/// Throws Error, with the call, the error code and `details`, unless `code` is CL_SUCCESS.
 template <class... Details>
 void check_cl(cl_int code, const char* call, const Details&... details) {
   if (code != CL_SUCCESS) throw Error(call, " failed with ", opencl_error_name(code), details...);
 }
 
-/// Owns one OpenCL object: released on destruction, moved but not copied.
+/// Owns one OpenCL object and releases it on destruction; move-only.
 template <class Handle, cl_int (*release)(Handle)>
 class Owned {
  public:

@@ -1,4 +1,4 @@
-// Compiling the embedded kernel files for one device, and finding kernels in them by name.
+// Compiles the embedded kernel files for a device and looks kernels up by name.
 #pragma once
 #include <algorithm>
 #include <iterator>
@@ -11,13 +11,13 @@
 
 namespace motiongan {
 
-/// The arithmetic of a Context: float for training and sampling, double for checks of derivatives.
+/// Precision of a Context: f32 for training and sampling, f64 for gradient checks.
 enum class Precision { f32, f64 };
 
 namespace detail {
 
-/// The text of cl/<name>.cl, with the files that it includes in place. #line directives make the compiler name
-/// the real files in its messages. Error where there is no such file.
+/// The source of cl/<name>.cl with its includes expanded; #line directives keep the file names and line
+/// numbers of compiler messages right. Throws Error if there is no such file.
 inline std::string kernel_source(std::string_view name) {
   const auto found = std::find_if(std::begin(kernels::files), std::end(kernels::files),
                                   [&](const kernels::File& file) { return name == file.name; });
@@ -39,21 +39,22 @@ inline std::string kernel_source(std::string_view name) {
   return out;
 }
 
-/// Programs and kernels of one context, built when first asked for and kept.
+/// Programs and kernels of one context, built on first use and cached.
 class ProgramCache {
  public:
   ProgramCache(cl_context context, const Device& device, Precision precision)
       : context_(context), device_(device), precision_(precision) {}
 
-  /// Numbers of the context's type that one vector register of a CPU holds (4 on other devices).
+  /// Elements per vector (VW in the kernels): 4, 8 or 16 on a CPU, by its vector registers, 4 elsewhere.
   unsigned vector_width() const {
     unsigned width = device_.is_cpu() ? device_.native_float_width : 4;
     width = width >= 16 ? 16 : width >= 8 ? 8 : 4;
     return precision_ == Precision::f64 && width > 4 ? width / 2 : width;
   }
 
+  /// Kernel `name` of cl/<file>.cl. Throws Error, with the build log, if the file does not compile.
   cl_kernel kernel(const char* file, const char* name) {
-    std::string& key = key_;  // reused, so that a look-up allocates nothing
+    std::string& key = key_;  // reused, so that lookups do not allocate
     key.assign(file).append(1, '/').append(name);
     if (const auto found = kernels_.find(key); found != kernels_.end()) return found->second.get();
     cl_int code = CL_SUCCESS;

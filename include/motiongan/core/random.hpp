@@ -1,5 +1,4 @@
-// Philox 4x32-10 on the host, equal bit for bit to cl/random.cl, and the keys of every random number of the
-// library.
+// Counter-based random numbers: Philox 4x32-10, bit-equal on host and device (cl/random.cl), and their keys.
 #pragma once
 #include <array>
 #include <cmath>
@@ -11,7 +10,7 @@ namespace motiongan {
 
 using PhiloxWords = std::array<std::uint32_t, 4>;
 
-/// Ten rounds of Philox 4x32 (Salmon et al. 2011): four random words for a 128-bit counter and a 64-bit key.
+/// Philox 4x32-10 (Salmon et al. 2011): four random words for a 128-bit counter and a 64-bit key.
 inline PhiloxWords philox(PhiloxWords counter, std::uint64_t seed) {
   auto key0 = static_cast<std::uint32_t>(seed), key1 = static_cast<std::uint32_t>(seed >> 32);
   for (int round = 0; round < 10; ++round) {
@@ -26,8 +25,8 @@ inline PhiloxWords philox(PhiloxWords counter, std::uint64_t seed) {
   return counter;
 }
 
-/// What a random number is for. Together with the seed, the training step, the sample and the position it
-/// names the number: nothing else influences it. Noise of the generator's level i is noise + i.
+/// The purpose of a random number. A number depends only on seed, stream, training step, sample and position.
+/// The noise of level i of the generator is stream noise + i.
 enum class RandomStream : std::uint32_t {
   weights = 1,
   windows = 2,
@@ -44,7 +43,7 @@ inline RandomStream operator+(RandomStream stream, std::size_t level) {
   return static_cast<RandomStream>(static_cast<std::uint32_t>(stream) + static_cast<std::uint32_t>(level));
 }
 
-/// Names one array of random numbers: (seed, stream, step), and the number of its first sample.
+/// Identifies an array of random numbers: seed, stream and step, and where its samples and frames begin.
 struct RandomKey {
   std::uint64_t seed = 0;
   RandomStream stream = RandomStream::noise;
@@ -61,20 +60,20 @@ struct RandomKey {
   cl_uint seed_high() const { return static_cast<cl_uint>(seed >> 32); }
 };
 
-/// One word of a key's array, on the host: `sample` and `position` count as on the device.
+/// One random word, on the host; `sample` and `position` as on the device.
 inline std::uint32_t random_word(const RandomKey& key, std::uint32_t sample, std::uint32_t position = 0) {
   return philox(
       {position, 0, key.first_sample + sample, static_cast<std::uint32_t>(key.stream) ^ (key.step << 8)},
       key.seed)[0];
 }
-/// A whole number below `count`.
+/// Uniform in 0 .. count - 1.
 inline std::size_t random_below(const RandomKey& key, std::uint32_t sample, std::size_t count,
                                 std::uint32_t position = 0) {
   return static_cast<std::size_t>((std::uint64_t{random_word(key, sample, position)} * count) >> 32);
 }
 
-/// Standard normal numbers, [frames, batch, channels]. Row t is frame key.first_frame + t, counted from
-/// `frame_of`[b] where that is given: a frame's numbers do not depend on where the array begins.
+/// Standard normal noise, [frames, batch, channels]. Row t of sample b belongs to frame key.first_frame + t
+/// (+ frame_of[b] if given): a frame's noise does not depend on where the array begins.
 inline Tensor random_normal(const Context& context, const RandomKey& key, std::size_t frames,
                             std::size_t batch, std::size_t channels, const Indices& frame_of = {}) {
   Tensor out(context, {frames, batch, channels});
@@ -85,19 +84,19 @@ inline Tensor random_normal(const Context& context, const RandomKey& key, std::s
   return out;
 }
 
-/// Fills `out` [frames, batch, channels] with the numbers that random_normal() makes for samples with keys of
-/// their own: `keys` holds for each (low word of the seed, high word, sample, first frame), row t is frame
-/// first_frame + t counted from there.
+/// Fills `out` [frames, batch, channels] with the noise of random_normal() for step 0, with one key per
+/// sample: `keys` [batch, 4] holds (low word of the seed, high word, sample, frame), and row t of sample b
+/// belongs to frame keys[b][3] + first_frame + t. Throws Error if `keys` is too short.
 inline void fill_normal_each(const Tensor& out, RandomStream stream, std::int32_t first_frame,
                              const Indices& keys) {
   const std::size_t frames = out.dim(0), batch = out.dim(1), channels = out.dim(2);
-  require(keys.size() >= 4 * batch, "fill_normal_each: ", keys.size(), " numbers of keys for ", batch,
-          " samples, 4 each");
+  require(keys.size() >= 4 * batch, "fill_normal_each: keys has ", keys.size(),
+          " elements, expected 4 for each of ", batch, " samples");
   out.context().launch("random", "random_normal_each", LaunchGrid::items(frames * batch * ((channels + 63) / 64)),
                        out, frames, batch, channels, static_cast<cl_uint>(stream), first_frame, keys);
 }
 
-/// One uniform number of (0, 1) per sample, [batch].
+/// Uniform in (0, 1), one number per sample: [batch].
 inline Tensor random_uniform(const Context& context, const RandomKey& key, std::size_t batch) {
   Tensor out(context, {batch});
   context.launch("random", "random_uniform", LaunchGrid::items(batch), out, batch, key.seed_low(), key.seed_high(),
@@ -105,7 +104,7 @@ inline Tensor random_uniform(const Context& context, const RandomKey& key, std::
   return out;
 }
 
-/// One whole number of [low, low + count) per sample.
+/// Uniform integers in [low, low + count), one per sample: [batch].
 inline Indices random_integers(const Context& context, const RandomKey& key, std::size_t batch, int low,
                                std::size_t count) {
   Indices out(context, batch);

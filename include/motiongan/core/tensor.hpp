@@ -1,4 +1,4 @@
-// Tensors: a shape and a piece of a device buffer, in the number type of their Context.
+// Tensors and index arrays on the device.
 #pragma once
 #include <optional>
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace motiongan {
 
-/// Sizes of the dimensions, slowest first. Motion is [frames, batch, channels].
+/// Sizes of the axes, row-major. Motion is [frames, batch, channels].
 using Shape = std::vector<std::size_t>;
 
 inline std::size_t element_count(const Shape& shape) {
@@ -21,7 +21,8 @@ inline std::size_t element_count(const Shape& shape) {
 /// "[32, 64, 93]"
 inline std::string to_string(const Shape& shape) { return concat(shape); }
 
-/// A contiguous array on the device. Copies share the data; the data are not initialised.
+/// A contiguous array on the device, in its context's precision. Copies and views share the data; a new
+/// tensor is not initialised.
 class Tensor {
  public:
   Tensor() = default;
@@ -31,7 +32,8 @@ class Tensor {
         size_(element_count(shape)),
         shape_(std::move(shape)) {}
 
-  /// A tensor with the given values, converted to the context's type.
+  /// A tensor with the given values, converted to the context's precision. Throws Error if their number does
+  /// not match the shape.
   template <class T>
   static Tensor from(const Context& context, Shape shape, std::span<const T> values) {
     Tensor t(context, std::move(shape));
@@ -50,10 +52,10 @@ class Tensor {
   std::size_t dim(std::size_t i) const { return shape_.at(i); }
   std::size_t rank() const { return shape_.size(); }
   cl_mem buffer() const { return storage_->buffer(); }
-  /// First element within the buffer.
+  /// Index of the first element within the buffer.
   std::size_t offset() const { return offset_; }
 
-  /// The same data under another shape of the same size.
+  /// The same data with another shape. Throws Error if the sizes differ.
   Tensor reshape(Shape shape) const {
     require(element_count(shape) == size_, "cannot reshape ", shape_, " to ", shape);
     Tensor t = *this;
@@ -61,7 +63,7 @@ class Tensor {
     return t;
   }
 
-  /// A piece of the same data: `shape` elements from `first` on.
+  /// A contiguous part of the same data, from element `first`. Throws Error if it exceeds the tensor.
   Tensor view(std::size_t first, Shape shape) const {
     const std::size_t n = element_count(shape);
     require(first + n <= size_, "view of ", n, " elements from ", first, " does not fit ", shape_);
@@ -72,7 +74,7 @@ class Tensor {
     return t;
   }
 
-  /// Uploads without waiting for the queue.
+  /// Uploads without waiting for the queue. Throws Error if the number of values is not size().
   template <class T>
   void write(std::span<const T> values) {
     require(values.size() == size_, values.size(), " values given for a tensor of shape ", shape_);
@@ -82,13 +84,13 @@ class Tensor {
       write_as<float>(values);
   }
 
-  /// Reads back all values; waits for the queue.
+  /// Downloads all values; waits for the queue.
   template <class T = float>
   std::vector<T> to_host() const {
     return context_->precision() == Precision::f64 ? read_as<double, T>() : read_as<float, T>();
   }
 
-  /// The only value of a one-element tensor; waits for the queue.
+  /// The value of a one-element tensor; waits for the queue. Throws Error for any other size.
   double item() const {
     require(size_ == 1, "item() needs one element, the shape is ", shape_);
     return to_host<double>()[0];
@@ -117,13 +119,13 @@ class Tensor {
       return std::vector<T>(values.begin(), values.end());
   }
 
-  std::optional<Context> context_;  // a Context is never empty, an unset tensor has none
+  std::optional<Context> context_;  // empty for a default-constructed tensor
   std::shared_ptr<detail::Storage> storage_;
   std::size_t offset_ = 0, size_ = 0;
   Shape shape_;
 };
 
-/// Whole numbers on the device: word ids, row indices, frame offsets.
+/// Integers on the device: word ids, row indices, frame offsets.
 class Indices {
  public:
   Indices() = default;
@@ -163,7 +165,7 @@ inline void add_argument(KernelArguments& to, const Tensor& tensor) {
 }
 inline void add_argument(KernelArguments& to, const Indices& indices) { to.set(indices.buffer()); }
 
-/// A tensor from one of its elements on, as a kernel argument; cheaper than a view.
+/// A tensor from element `first`, as a kernel argument; cheaper than a view.
 struct At {
   const Tensor& tensor;
   std::size_t first;

@@ -1,4 +1,4 @@
-// Clips with classes as positions, cut into priors and futures for training (SPEC section 5).
+// Labelled clips as joint positions, with priors and futures for training (Malek-Podjaski & Deligianni).
 #pragma once
 #include <cstddef>
 #include <filesystem>
@@ -18,53 +18,53 @@ namespace motiongan::motion {
 /// One clip at the data set's rate.
 struct ActionClip {
   std::string id;
-  std::string subject;  ///< empty where it was not asked for
-  std::size_t label = 0;
+  std::string subject;  ///< empty unless the options need subjects
+  std::size_t label = 0;  ///< index into format.classes
   std::size_t frames = 0;
   std::vector<float> poses;       ///< [frames, kept dof], normalised
   Skeleton skeleton;              ///< with the clip's own bone lengths
-  std::vector<RootTrack> places;  ///< [frames], where the root stood
+  std::vector<RootTrack> places;  ///< [frames], the root's track
 };
 
-/// Clips of positions with classes, and all that is needed to turn poses back into positions.
+/// Labelled clips of joint positions, and everything needed to convert poses back to positions.
 ///
-/// Clips without a label are left out and counted, clips shorter than 2T frames are skipped. Clips are at
-/// `rate`: rotations are resampled by slerp, positions linearly. Unless subjects decide, each class is split
-/// by itself, so that both parts have clips of every class that has two. The normalizer is fitted to the
-/// training clips. Classes are in the order of their names.
+/// Clips without a label are left out and counted; clips shorter than 2T frames are skipped. Clips are
+/// resampled to `rate`: rotations by slerp, positions linearly. Unless the split is by subject, each class is
+/// split separately, so that both parts have clips of every class with at least two. The normalizer is fitted
+/// to the training clips. Classes are sorted by name.
 class ActionDataset {
  public:
   PositionFormat format;  ///< skeleton of the first clip used
   ActionDatasetOptions options;
-  std::vector<ActionClip> train;  ///< in the order of their files
+  std::vector<ActionClip> train;  ///< in file order
   std::vector<ActionClip> test;
   std::vector<SkippedClip> skipped;  ///< clips that are too short
   std::size_t unlabelled = 0;        ///< clips without a label
-  std::size_t other_classes = 0;     ///< clips whose class is not one of options.classes
-  std::size_t dropped_frames = 0;    ///< T-pose frames taken from the clips' starts
+  std::size_t other_classes = 0;     ///< clips whose class is not in options.classes
+  std::size_t dropped_frames = 0;    ///< T-pose frames removed from the starts of clips
 
-  /// All .bvh, .csv and .npy files in a folder and the folders in it, or one file. Error for an empty folder,
-  /// unreadable files, different joints, no or several sources of labels, no labelled clip, no clip that is
-  /// long enough, a class without a training clip, and an unknown subject or class in the options.
+  /// Loads all .bvh, .csv and .npy files in a folder and its subfolders, or one file. Throws Error for an
+  /// empty folder, unreadable files, different joints, no source of labels or several, no labelled clip, no
+  /// clip that is long enough, a class without a training clip, and an unknown subject or class in the
+  /// options.
   static ActionDataset from_folder(const std::filesystem::path& folder_or_file,
                                    const ActionDatasetOptions& options);
 
-  /// The same from motions in memory. Where the options name no source of labels, a motion's first caption is
-  /// its label; one without captions has none.
+  /// The same from motions in memory. If the options name no source of labels, a motion's first caption is
+  /// its label; a motion without captions has none.
   static ActionDataset from_motions(const std::vector<LabelledMotion>& motions,
                                     const ActionDatasetOptions& options = {});
 
-  /// The same from positions in memory; `labels` by the clips' ids.
+  /// The same from positions in memory; `labels` are by clip id.
   static ActionDataset from_positions(const std::vector<PositionClip>& clips, const ActionLabels& labels,
                                       const ActionDatasetOptions& options = {});
 
-  /// How many windows of 2T frames the clip holds: one may start at any frame below this.
+  /// Number of windows of 2T frames in the clip: one may start at any frame below it.
   std::size_t starts(const ActionClip& clip) const {
     return clip.frames >= 2 * format.frames ? clip.frames - 2 * format.frames + 1 : 0;
   }
 
-  /// Writes which clip is in which part, one a line: `train <TAB> id <TAB> class`, and the subject where it
-  /// is known.
+  /// Writes the split, one clip per line: `train <TAB> id <TAB> class` (or `test`), and the subject if known.
   void write_split(const std::filesystem::path& path) const {
     std::string text = concat("# split of ", train.size() + test.size(), " clips, seed ", options.split_seed,
                               ", training share ", options.train_share, "\n");

@@ -1,4 +1,4 @@
-// How an ActionDataset is made of clips. Included by action_dataset.hpp.
+// Construction of an ActionDataset. Included by action_dataset.hpp.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -25,11 +25,11 @@ namespace action_dataset_detail {
 /// A source that will be used.
 struct Chosen {
   std::size_t source = 0;
-  SplitClip what;     ///< the label's number counts in `classes`
-  std::string label;  ///< its name
+  SplitClip what;     ///< its label is an index into `classes`
+  std::string label;  ///< name of the label
 };
 
-/// The sources that have a label of a class that is kept, and the names of these classes, sorted.
+/// The sources whose label is one of the selected classes; sets format.classes to their names, sorted.
 inline std::vector<Chosen> choose(const std::vector<Source>& sources, const ActionLabels* given,
                                   ActionDataset& data) {
   const ActionDatasetOptions& o = data.options;
@@ -37,9 +37,9 @@ inline std::vector<Chosen> choose(const std::vector<Source>& sources, const Acti
       o.pattern.empty() ? std::nullopt : std::optional<NamePattern>(o.pattern);
   const bool from_pattern = pattern && pattern->has_label();
   require(!pattern || from_pattern || pattern->has_subject(), "the pattern '", o.pattern,
-          "' has neither {label} nor {subject}; it would tell nothing");
+          "' has neither {label} nor {subject}, expected at least one of them");
   require((o.labels.empty() ? 0 : 1) + (o.folders ? 1 : 0) + (from_pattern ? 1 : 0) + (given ? 1 : 0) <= 1,
-          "labels were asked for from several places, expected one of a label file, folders, and a pattern "
+          "labels come from several sources, expected exactly one of a label file, folders, and a pattern "
           "with {label}");
   const ActionLabels read = o.labels.empty() ? ActionLabels{} : read_action_labels(o.labels);
   const ActionLabels* const file = o.labels.empty() ? given : &read;
@@ -75,18 +75,17 @@ inline std::vector<Chosen> choose(const std::vector<Source>& sources, const Acti
   std::string list;
   for (const std::string& label : all) list += (list.empty() ? "'" : ", '") + label + "'";
   for (const std::string& name : o.classes)
-    require(all.contains(name), "the class '", name,
-            "' was asked for, but no clip is of it; the classes are: ",
+    require(all.contains(name), "no clip has the class '", name, "'; the classes are: ",
             list.empty() ? std::string("none") : list);
   require(!out.empty(), "none of ", sources.size(), " clips has a label",
-          o.labels.empty() ? std::string() : " in " + o.labels.string(), "; the first is called '",
+          o.labels.empty() ? std::string() : " in " + o.labels.string(), "; the first clip is '",
           sources.front().name, "'");
   data.format.classes.assign(used.begin(), used.end());
   for (Chosen& c : out) c.what.label = data.format.class_index(c.label);
   return out;
 }
 
-/// Loads what was chosen, all with one root joint, and takes out what holds no window; [chosen].
+/// Loads the chosen clips, all with one root joint, and removes those too short for a window; [chosen].
 inline std::vector<Loaded> load_all(const std::vector<Source>& sources, std::vector<Chosen>& chosen,
                                     ActionDataset& data) {
   const ActionDatasetOptions& o = data.options;
@@ -127,14 +126,14 @@ inline std::vector<Loaded> load_all(const std::vector<Source>& sources, std::vec
   chosen = std::move(kept);
   clips = std::move(kept_clips);
 
-  int root = 0;  // a clip in which nothing travels says 0
+  int root = 0;  // 0 for a clip in which nothing travels
   for (const Loaded& clip : clips) root = std::max(root, clip.root);
   in_two_threads(clips.size(), [&](std::size_t i) {
     if (clips[i].root != root) load(i, root);
   });
   for (std::size_t i = 1; i < clips.size(); ++i)
     require_same_joints(clips.front().clip.skeleton, clips[i].clip.skeleton,
-                        concat("clip '", clips[i].clip.id, "', beside '", clips.front().clip.id, "',"));
+                        concat("clip '", clips[i].clip.id, "', compared with '", clips.front().clip.id, "',"));
   return clips;
 }
 
@@ -152,16 +151,16 @@ inline std::vector<bool> split(const std::vector<Chosen>& chosen, const ActionDa
   for (std::size_t c = 0; c < classes; ++c)
     require(
         trained[c], "the class '", data.format.classes[c],
-        "' has no training clip: all its clips are of subjects for testing; name other test subjects, use "
-        "another split seed or a larger training share, or leave the class out");
+        "' has no training clip: all its clips are of test subjects; choose other test subjects, another "
+        "split seed or a larger train_share, or leave the class out");
   return is_train;
 }
 
 inline ActionDataset build(const std::vector<Source>& sources, const ActionLabels* given,
                            const ActionDatasetOptions& options) {
-  require(options.frames > 0, "a window of 0 frames was asked for, expected at least 1");
-  require(std::isfinite(options.rate) && options.rate > 0, "a rate of ", options.rate,
-          " frames per second was asked for, expected more than 0");
+  require(options.frames > 0, "frames is 0, expected at least 1");
+  require(std::isfinite(options.rate) && options.rate > 0, "rate is ", options.rate,
+          " frames per second, expected more than 0");
   require(!sources.empty(), "a data set needs at least one clip");
   std::set<std::string> ids;
   for (const Source& s : sources) require(ids.insert(s.id).second, "two clips are called '", s.id, "'");
@@ -173,7 +172,7 @@ inline ActionDataset build(const std::vector<Source>& sources, const ActionLabel
 
   PositionFormat& format = data.format;
   format.layout = PositionLayout(clips.front().clip.skeleton, options.root_track);
-  format_hierarchy(format.skeleton());  // a model file holds the skeleton so: Error before hours of training
+  format_hierarchy(format.skeleton());  // as stored in a model file: throws before training
   for (const Joint& joint : format.skeleton().joints)
     require(is_utf8(joint.name), "clip '", clips.front().clip.id, "' has a joint called '", joint.name,
             "', which is not UTF-8; a model file cannot hold it: rename the joint");
@@ -217,8 +216,8 @@ inline ActionDataset ActionDataset::from_folder(const std::filesystem::path& fol
   namespace detail = action_dataset_detail;
   require(
       !options.labels.empty() || options.folders || !options.pattern.empty(),
-      "nothing says which class a clip is of: give a label file (lines of clip id <TAB> label), labels by "
-      "folders, or a pattern of file names such as *_{label}_*");
+      "there are no labels: give a label file (lines of clip id <TAB> label), labels by folder, or a file "
+      "name pattern such as *_{label}_*");
   const std::vector<std::filesystem::path> files = detail::find_clip_files(folder_or_file, options);
   const std::vector<std::string> ids = clip_ids(files, folder_or_file);
   std::vector<detail::Source> sources;
@@ -235,7 +234,7 @@ inline ActionDataset ActionDataset::from_folder(const std::filesystem::path& fol
 inline ActionDataset ActionDataset::from_motions(const std::vector<LabelledMotion>& motions,
                                                  const ActionDatasetOptions& options) {
   require(!options.folders,
-          "motions in memory lie in no folders, expected labels from captions, a file or a "
+          "folders is set, but motions in memory have no folders; expected labels from captions, a file or a "
           "pattern");
   std::vector<action_dataset_detail::Source> sources;
   for (const LabelledMotion& m : motions) {
@@ -250,7 +249,8 @@ inline ActionDataset ActionDataset::from_motions(const std::vector<LabelledMotio
 inline ActionDataset ActionDataset::from_positions(const std::vector<PositionClip>& clips,
                                                    const ActionLabels& labels,
                                                    const ActionDatasetOptions& options) {
-  require(!options.folders, "clips in memory lie in no folders, expected labels by id or a pattern");
+  require(!options.folders,
+          "folders is set, but clips in memory have no folders; expected labels by id or a pattern");
   std::vector<action_dataset_detail::Source> sources;
   for (const PositionClip& clip : clips)
     sources.push_back({clip.id, clip.id, {}, [&clip, &options](int) {

@@ -1,5 +1,4 @@
-// Which action (or emotion, or style) a clip shows, and who performs it: from a file, from folders or from
-// the file's name.
+// Labels (action, emotion or style) and subjects of clips: from a file, from folders or from file names.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -19,9 +18,9 @@ namespace motiongan::motion {
 /// The label of each clip, by clip id.
 using ActionLabels = std::map<std::string, std::string, std::less<>>;
 
-/// Reads lines of `clip id <TAB> label`. Lines that start with # and blank lines are skipped; the same line
-/// may stand twice. Errors are `name:line: ...`: no tab, no id, no label, a clip with two labels, text that
-/// is not UTF-8.
+/// Reads lines of `clip id <TAB> label`. Blank lines and lines that start with # are skipped; identical lines
+/// may repeat. Throws Error as `name:line: ...` for a missing tab, id or label, a clip with two labels, or
+/// text that is not UTF-8.
 inline ActionLabels parse_action_labels(std::string_view text, std::string_view name) {
   ActionLabels out;
   std::map<std::string, std::size_t, std::less<>> lines;  // where each clip was labelled
@@ -39,35 +38,35 @@ inline ActionLabels parse_action_labels(std::string_view text, std::string_view 
   return out;
 }
 
-/// See parse_action_labels. Error too where the file cannot be read or has no labels.
+/// As parse_action_labels, from a file. Throws Error also if the file cannot be read or has no labels.
 inline ActionLabels read_action_labels(const std::filesystem::path& path) {
   ActionLabels labels = parse_action_labels(read_text(path, "label file"), path.string());
   require(!labels.empty(), path.string(), " holds no labels, expected lines of clip id <TAB> label");
   return labels;
 }
 
-/// The label of a file in a folder of labels: the first folder below `root` (`walk/01.bvh`: "walk"). Error
-/// for a file that lies in `root` itself.
+/// The label of a file by its folder: the first folder below `root` (`walk/01.bvh`: "walk"). Throws Error for
+/// a file directly in `root`.
 inline std::string label_from_folder(const std::filesystem::path& file, const std::filesystem::path& root) {
   const std::filesystem::path below = file.lexically_relative(root);
   require(!below.empty() && below.has_parent_path() && *below.begin() != "..", file.string(),
-          " lies in no folder below ", root.string(),
-          ", expected one that is called as the clip's class, such as walk/", file.filename().string());
+          " is not in a subfolder of ", root.string(),
+          ", expected one named after the clip's class, such as walk/", file.filename().string());
   return below.begin()->string();
 }
 
-/// What a name says by a pattern; empty what the pattern does not ask for.
+/// What a pattern finds in a name; empty for fields that the pattern does not have.
 struct NameParts {
   std::string label, subject;
 };
 
-/// A pattern of file names without extension: `{label}` and `{subject}` stand for one or more characters but
-/// '_', `*` for any characters or none, everything else for itself. "dataset-1_*_{label}_*" finds "happy" in
-/// dataset-1_walk_happy_001. Where a name can be read in several ways, each `*` from the left is as short as
-/// it can be.
+/// A pattern for file names without extension: `{label}` and `{subject}` match one or more characters except
+/// '_', `*` matches any characters or none, everything else matches itself. "dataset-1_*_{label}_*" finds
+/// "happy" in dataset-1_walk_happy_001. If a name matches in several ways, each `*` from the left is as short
+/// as possible.
 class NamePattern {
  public:
-  /// Error for other braces, for a field that comes twice, and for two fields side by side.
+  /// Throws Error for other braces, a field that appears twice, and two adjacent fields.
   explicit NamePattern(std::string text) : text_(std::move(text)) {
     for (std::size_t at = 0; at < text_.size();) {
       const std::string_view rest = std::string_view(text_).substr(at);
@@ -77,7 +76,7 @@ class NamePattern {
                 "the pattern '", text_, "' has ", word, " twice, expected it once");
         require(parts_.empty() || parts_.back().kind == Kind::literal || parts_.back().kind == Kind::any,
                 "the pattern '", text_, "' has nothing between ", word,
-                " and the field before it: where the one ends could not be told");
+                " and the field before it: the boundary would be ambiguous");
         parts_.push_back({kind, {}});
         at += word.size();
         return true;
@@ -93,17 +92,18 @@ class NamePattern {
       else
         parts_.push_back({Kind::literal, std::string(1, c)});
     }
-    require(!parts_.empty(), "the pattern of file names is empty, expected such as *_{label}_*");
+    require(!parts_.empty(), "the file name pattern is empty, expected for example *_{label}_*");
   }
 
   const std::string& text() const { return text_; }
   bool has_label() const { return has(Kind::label); }
   bool has_subject() const { return has(Kind::subject); }
 
-  /// What the name says. Error, with pattern and name, for a name that does not match.
+  /// The label and subject in the name. Throws Error, with pattern and name, for a name that does not match.
   NameParts parse(std::string_view name) const {
     NameParts found;
-    // rest[part][at]: whether the parts from `part` on can be all of the name from `at` on; from the back.
+    // rest[part][at]: whether the parts from `part` on match all of the name from `at` on; filled from the
+    // back.
     std::vector<std::vector<char>> rest(parts_.size() + 1, std::vector<char>(name.size() + 1, 0));
     rest[parts_.size()][name.size()] = 1;
     for (std::size_t p = parts_.size(); p-- > 0;)
@@ -135,7 +135,7 @@ class NamePattern {
     return std::any_of(parts_.begin(), parts_.end(), [&](const Part& p) { return p.kind == kind; });
   }
 
-  /// How many characters from `at` on the part can stand for: from .. to; `nowhere` for none at all.
+  /// How many characters from `at` on the part can match, first .. second; second is `nowhere` for no match.
   static std::pair<std::size_t, std::size_t> reach(const Part& part, std::string_view name, std::size_t at) {
     if (part.kind == Kind::any) return {0, name.size() - at};
     if (part.kind == Kind::literal) {
@@ -150,13 +150,13 @@ class NamePattern {
   std::vector<Part> parts_;
 };
 
-/// Who performs a clip where no pattern says so: the text before the name's first '_' (`07_01`: "07"). Error
-/// for a name without.
+/// The subject of a clip without a pattern: the text before the name's first '_' (`07_01`: "07"). Throws
+/// Error for a name without one.
 inline std::string subject_from_name(std::string_view name) {
   const std::size_t end = name.find('_');
   require(end != name.npos && end > 0, "the name '", name,
-          "' does not begin with a subject and '_', as 07_01 does; say where names have the subject with a "
-          "pattern such as {subject}-*");
+          "' does not begin with a subject and '_', as 07_01 does; give a pattern that locates the subject, "
+          "such as {subject}-*");
   return std::string(name.substr(0, end));
 }
 

@@ -1,4 +1,4 @@
-// What a data set of classes is made of, and how.
+// Options of an ActionDataset.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -10,23 +10,58 @@
 
 namespace motiongan::motion {
 
-/// What a data set of classes is made of, and how. Labels come from one place: `labels`, `folders` or a
-/// `pattern` with {label}. Subjects come from a pattern with {subject}, else from the text before the first
-/// '_' of the clip's name; they are asked for with `by_subject` or `test_subjects`.
+/// Options of an ActionDataset. Labels come from one source: `labels`, `folders` or a `pattern` with {label}.
+/// Subjects are needed only with `by_subject` or `test_subjects`; they come from a pattern with {subject},
+/// else from the text before the first '_' of the clip's name.
 struct ActionDatasetOptions {
   std::size_t frames = 30;                   ///< T: a window is a prior and a future of T frames each
   double rate = 30;                          ///< frames per second
   std::filesystem::path labels{};            ///< file of lines `clip id <TAB> label`
-  std::string pattern{};                     ///< of file names, see NamePattern
-  bool folders = false;                      ///< whether the folder that a clip lies in is its label
-  bool root_track = true;                    ///< whether steps, height and turns are part of a pose
-  double train_share = 0.67;                 ///< of the clips; the rest is for testing
+  std::string pattern{};                     ///< for file names, see NamePattern
+  bool folders = false;                      ///< whether a clip's folder is its label
+  bool root_track = true;                    ///< whether poses include the root's steps, height and turns
+  double train_share = 0.67;                 ///< fraction of the clips; the rest is for testing
   bool by_subject = false;                   ///< whether all clips of a subject go to the same part
   std::vector<std::string> test_subjects{};  ///< these, and only these, are for testing
   std::uint64_t split_seed = 1;
   FirstFrame first_frame = FirstFrame::automatic;  ///< for BVH files
-  std::filesystem::path bones{};       ///< bone list for .csv and .npy files; empty: the one beside them
-  std::vector<std::string> classes{};  ///< keep only clips of these; empty: of all
+  std::filesystem::path bones{};       ///< bone list for .csv and .npy files; empty: bones.tsv next to them
+  std::vector<std::string> classes{};  ///< keep only clips of these; empty: all
+
+  void list_fields(FieldList& list) {
+    list.add(labels, {.key = "labels",
+                      .help = "file of lines `clip id <TAB> label` [FOLDER/labels.tsv]",
+                      .type = "FILE"});
+    list.add(folders, {.key = "folders", .help = "a clip's label is the folder below FOLDER that it lies in"});
+    list.add(pattern, {.key = "pattern",
+                       .help = "of file names without extension: {label}, {subject}, * and text, such as "
+                               "*_{label}_*",
+                       .type = "PATTERN"});
+    list.add(classes, {.key = "classes", .help = "keep only clips of these labels [all]", .type = "A,B"});
+    list.add(bones, {.key = "bones",
+                     .help = "lines `joint <TAB> parent` for CSV and NPY files [bones.tsv beside them]",
+                     .type = "FILE"});
+    list.add(first_frame, {.key = "first_frame",
+                           .help = "auto: drop a T-pose that precedes the motion; keep; drop: the first frame"});
+    list.add(by_subject, {.key = "by_subject",
+                          .help = "all clips of a subject go to the same part (subject: by --pattern, else "
+                                  "the name up to its first _)",
+                          .option = "--subjects"});
+    list.add(test_subjects, {.key = "test_subjects",
+                             .help = "hold out these subjects, and only these, for testing",
+                             .type = "A,B"});
+    list.add(train_share, {.key = "train_share",
+                           .help = "fraction of the clips to train on; the rest is held out for testing",
+                           .range = Range::between(0, 1)});
+    list.add(split_seed, {.key = "split_seed", .help = "selects which clips those are"});
+    list.add(frames, {.key = "frames",
+                      .help = "T: frames of the given prior, and of what is generated at once",
+                      .range = Range::at_least(1)});
+    list.add(rate, {.key = "rate", .help = "frames per second", .range = Range::above(0)});
+    list.add(root_track, {.key = "root_track",
+                          .help = "learn steps, turns and height of the root, so that characters travel",
+                          .option = "--root"});
+  }
 };
 
 }  // namespace motiongan::motion

@@ -1,4 +1,4 @@
-// Clips with classes on their way into a data set: found in folders, read, brought to one rate.
+// Loading labelled clips: finding files, reading them, resampling to one rate.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -21,13 +21,15 @@
 
 namespace motiongan::motion {
 
-/// The positions of a motion at `rate`, of the joint `root` (negative: moving_root) and those below it.
+/// Joint positions of a motion at `rate` frames per second, of the joint `root` (negative: moving_root) and
+/// those below it.
 inline PositionClip positions_of(const Motion& motion, const std::string& id, double rate, int root = -1) {
   const Motion folded = fold_into_root(resample(motion, rate), root < 0 ? moving_root(motion) : root);
   return {id, folded.skeleton, rate, folded.frames, joint_positions(folded)};
 }
 
-/// The clip between its first and last frame at another rate, linearly between frames.
+/// The clip resampled to `rate` frames per second, linearly, from its first frame to at most its last. Throws
+/// Error if a rate is not positive.
 inline PositionClip resample(const PositionClip& clip, double rate) {
   const std::size_t joints = clip.skeleton.size();
   require(clip.positions.size() == clip.frames * joints, "clip '", clip.id, "' has ", clip.positions.size(),
@@ -47,19 +49,19 @@ inline PositionClip resample(const PositionClip& clip, double rate) {
 
 namespace action_dataset_detail {
 
-/// A clip as it comes into the data set.
+/// A clip as loaded for the data set.
 struct Loaded {
   PositionClip clip;  ///< at the data set's rate
   double seconds = 0;
-  int root = 0;             ///< the joint of the file that travels; joints above it are folded away
+  int root = 0;             ///< the joint of the file that travels; joints above it are folded into it
   std::size_t dropped = 0;  ///< T-pose frames
 };
 
-/// A clip that may be used, by name and by how to get it.
+/// A candidate clip: its name and how to load it.
 struct Source {
   std::string id;
-  std::string name;                        ///< the file's without extension, for labels and subjects
-  std::optional<std::string> label;        ///< where the clip brings one along
+  std::string name;                        ///< file name without extension, for labels and subjects
+  std::optional<std::string> label;        ///< if the clip comes with one
   std::function<Loaded(int root)> load{};  ///< root negative: the clip's own
 };
 
@@ -106,8 +108,8 @@ inline Loaded load_file(const std::filesystem::path& file, const std::string& id
   return out;
 }
 
-/// All .bvh, .csv and .npy files of a folder and the folders in it, sorted, but not the label file and the
-/// bone list; or the file itself. Error if there is none.
+/// All .bvh, .csv and .npy files in a folder and its subfolders, sorted, except the label file and the bone
+/// list; or the file itself. Throws Error if there are none.
 inline std::vector<std::filesystem::path> find_clip_files(const std::filesystem::path& where,
                                                           const ActionDatasetOptions& options) {
   namespace fs = std::filesystem;
@@ -129,7 +131,7 @@ inline std::vector<std::filesystem::path> find_clip_files(const std::filesystem:
       out.push_back(file);
   }
   require(!problem, "folder ", where.string(), " cannot be read: ", problem.message());
-  require(!out.empty(), "folder ", where.string(), " and the folders in it have no .bvh, .csv or .npy file");
+  require(!out.empty(), "folder ", where.string(), " and its subfolders have no .bvh, .csv or .npy file");
   std::sort(out.begin(), out.end());
   return out;
 }

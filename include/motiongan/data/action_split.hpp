@@ -1,4 +1,4 @@
-// Dividing clips with classes into training and test: class by class, or subject by subject.
+// Splitting labelled clips into training and test parts, by class or by subject.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -14,14 +14,14 @@
 
 namespace motiongan::motion {
 
-/// What decides which part a clip is in.
+/// What determines the part a clip is in.
 struct SplitClip {
   std::size_t label = 0;
   std::string subject;
 };
 
-/// Each class divided by itself (split_clips): for every clip whether it is for training. A class of one clip
-/// is for training.
+/// Splits each class separately (split_clips): whether each clip is for training, [clips]. A class of one
+/// clip is for training.
 inline std::vector<bool> split_by_class(const std::vector<SplitClip>& clips, std::size_t classes,
                                         double train_share, std::uint64_t seed) {
   std::vector<bool> is_train(clips.size(), false);
@@ -29,7 +29,7 @@ inline std::vector<bool> split_by_class(const std::vector<SplitClip>& clips, std
     std::vector<std::size_t> members;
     for (std::size_t i = 0; i < clips.size(); ++i)
       if (clips[i].label == c) members.push_back(i);
-    // Classes of the same size are not to be divided at the same places.
+    // A new seed for each class, so that classes of the same size are split differently.
     const std::vector<bool> part = split_clips(members.size(), train_share, splitmix64(seed));
     for (std::size_t m = 0; m < members.size(); ++m) is_train[members[m]] = part[m];
   }
@@ -38,14 +38,14 @@ inline std::vector<bool> split_by_class(const std::vector<SplitClip>& clips, std
 
 namespace action_split_detail {
 
-/// Which of `counts`, taken in `order`, add up to as near `target` as can be, [counts]. Neither none nor all
-/// of them if there are two or more.
+/// The subset of `counts`, taken in `order`, whose sum is nearest to `target`, [counts]. With two or more
+/// counts, neither none nor all.
 inline std::vector<bool> nearest_sum(const std::vector<std::size_t>& counts,
                                      const std::vector<std::size_t>& order, double target) {
   std::size_t total = 0;
   for (const std::size_t n : counts) total += n;
   constexpr std::size_t none = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> last(total + 1, none);  // the last number in a sum, none where it is not reached
+  std::vector<std::size_t> last(total + 1, none);  // last count in a sum; none if not reached
   for (const std::size_t i : order)
     for (std::size_t sum = total; sum >= counts[i]; --sum)
       if (last[sum] == none && (sum == counts[i] || last[sum - counts[i]] != none)) last[sum] = i;
@@ -62,13 +62,13 @@ inline std::vector<bool> nearest_sum(const std::vector<std::size_t>& counts,
 
 }  // namespace action_split_detail
 
-/// Whole subjects in one part: for every clip whether it is for training. Subjects are shuffled by the seed
-/// and chosen so that the share of clips is as near `train_share` as whole subjects allow; of up to 200
-/// shuffles the first is taken that gives both parts clips of every class, else the first that gives the
-/// training part clips of the most classes.
+/// Splits by whole subjects: whether each clip is for training, [clips]. Subjects are shuffled by the seed
+/// and chosen so that the fraction of training clips is as near to `train_share` as whole subjects allow. Of
+/// up to 200 shuffles, the first is taken that gives both parts clips of every class, else the first that
+/// gives the training part the most classes. Throws Error unless 0 < train_share <= 1.
 inline std::vector<bool> split_by_subject(const std::vector<SplitClip>& clips, std::size_t classes,
                                           double train_share, std::uint64_t seed) {
-  require(train_share > 0 && train_share <= 1, "the training share is ", train_share,
+  require(train_share > 0 && train_share <= 1, "train_share is ", train_share,
           ", expected more than 0 and at most 1");
   std::map<std::string, std::size_t> numbers;  // in the order of the names
   for (const SplitClip& clip : clips) numbers.emplace(clip.subject, 0);
@@ -90,7 +90,7 @@ inline std::vector<bool> split_by_subject(const std::vector<SplitClip>& clips, s
       is_train[i] = taken[numbers[clips[i].subject]];
       (is_train[i] ? in_train : in_test)[clips[i].label] = true;
     }
-    // Classes to train on come before classes to test.
+    // Classes in the training part take precedence.
     const auto trained = static_cast<std::size_t>(std::count(in_train.begin(), in_train.end(), true));
     const auto tested = static_cast<std::size_t>(std::count(in_test.begin(), in_test.end(), true));
     const std::size_t worth = 1 + 2 * classes * trained + tested;
@@ -102,8 +102,8 @@ inline std::vector<bool> split_by_subject(const std::vector<SplitClip>& clips, s
   return best;
 }
 
-/// The clips of the subjects named are for testing, all others for training. Error for a subject that no clip
-/// is of, and if none is left for training.
+/// Holds out the clips of `test_subjects`; all others are for training, [clips]. Throws Error for a subject
+/// without clips, and if no clip is left for training.
 inline std::vector<bool> split_off_subjects(const std::vector<SplitClip>& clips,
                                             const std::vector<std::string>& test_subjects) {
   std::map<std::string, std::size_t> known;

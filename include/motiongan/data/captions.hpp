@@ -1,4 +1,4 @@
-// What people say about clips: caption files, and names where there is no file.
+// Captions of clips, from caption files or from file names.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -16,11 +16,11 @@
 
 namespace motiongan::motion {
 
-/// Captions by clip id, in the order of the file.
+/// Captions by clip id; those of a clip are in file order.
 using Captions = std::map<std::string, std::vector<std::string>>;
 
-/// Reads lines of `clip id <TAB> description`, as the CMU index has them. Lines that start with # and blank
-/// lines are skipped; a clip with several lines has several captions. Errors are `name:line: ...`.
+/// Reads lines of `clip id <TAB> description`, as in the CMU index. Blank lines and lines that start with #
+/// are skipped; a clip with several lines has several captions. Throws Error as `name:line: ...`.
 inline Captions parse_captions(std::string_view text, std::string_view name) {
   Captions out;
   for_each_tab_line(text, name, "clip id <TAB> description", [&](const TabLine& line) {
@@ -35,12 +35,14 @@ inline Captions parse_captions(std::string_view text, std::string_view name) {
   return out;
 }
 
+/// As parse_captions, from a file. Throws Error also if the file cannot be read.
 inline Captions read_captions(const std::filesystem::path& path) {
   return parse_captions(read_text(path, "caption file"), path.string());
 }
 
-/// A caption for a clip that has none: the letters of its file's name, words apart
-/// (`dataset-1_walk_happy_001.bvh`: "dataset walk happy"); if the name has no letters, its folder's name.
+/// A caption for a clip without one: the words of its file name, without digits
+/// (`dataset-1_walk_happy_001.bvh`: "dataset walk happy"); if there are none, the words of its folder's name,
+/// else "motion".
 inline std::string caption_from_name(const std::filesystem::path& path) {
   std::string letters = path.stem().string();
   for (char& c : letters)

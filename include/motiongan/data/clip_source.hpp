@@ -1,5 +1,4 @@
-// Clips on their way into a data set: read, made ready and encoded by two threads, in an order that does not
-// depend on them.
+// Loading and encoding of clips on two threads, with results that do not depend on their timing.
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -24,28 +23,28 @@
 
 namespace motiongan::motion {
 
-/// A clip that a data set may use, by name and by how to get its motion.
+/// A candidate clip: its name and how to load its motion.
 struct ClipSource {
   std::string id;
-  std::string name;                   ///< the file's name where there is a file, for captions made of names
-  std::vector<std::string> captions;  ///< those it brings along, may be empty
+  std::string name;                   ///< path of the file, if any, for captions from names
+  std::vector<std::string> captions;  ///< those it comes with, may be empty
   std::function<Motion()> load;
 };
 
-/// A clip's poses, and what is needed to compare it with others.
+/// A clip's poses, and what is needed to match it with others.
 struct EncodedClip {
   Skeleton skeleton;
   double source_rate = 0;
   std::size_t source_frames = 0;
   std::size_t stride = 0;     ///< frames of `poses` between two frames of a window
   int root = 0;               ///< the joint that travels
-  std::size_t frames = 0;     ///< of `poses`; 0 for a clip that is too short
+  std::size_t frames = 0;     ///< of `poses`; 0 if the clip is too short
   std::vector<double> poses;  ///< [frames, full dof]
   double seconds() const { return source_frames == 0 ? 0 : static_cast<double>(source_frames) / source_rate; }
 };
 
-/// Frames of a clip of `source_rate` between two frames of a window at `rate`: their ratio where it is whole,
-/// else the next whole number below it (the clip is then resampled to rate * stride), at least 1.
+/// Frames of a clip at `source_rate` between two frames of a window at `rate`: their ratio if it is an
+/// integer, else rounded down (the clip is then resampled to rate * stride), at least 1.
 inline std::size_t natural_stride(double source_rate, double rate) {
   const double ratio = source_rate / rate;
   const double whole = std::round(ratio);
@@ -53,12 +52,13 @@ inline std::size_t natural_stride(double source_rate, double rate) {
   return static_cast<std::size_t>(std::max(1.0, std::floor(ratio)));
 }
 
-/// Whether the clip lasts as long as `frames` frames at `rate`.
+/// Whether the clip lasts at least as long as `frames` frames at `rate`.
 inline bool long_enough(const EncodedClip& clip, std::size_t frames, double rate) {
   return clip.seconds() >= static_cast<double>(frames) / rate * (1 - 1e-9);
 }
 
-/// Runs `work(i)` for 0 <= i < count on two threads; of several errors the one of the smallest i is thrown.
+/// Runs `work(i)` for 0 <= i < count on two threads; of several exceptions, that of the smallest i is
+/// rethrown.
 inline void in_two_threads(std::size_t count, const std::function<void(std::size_t)>& work) {
   std::vector<std::exception_ptr> errors(count);
   std::atomic<std::size_t> next{0};
@@ -79,8 +79,8 @@ inline void in_two_threads(std::size_t count, const std::function<void(std::size
     if (error) std::rethrow_exception(error);
 }
 
-/// The clip at its natural stride (`stride` 0) or at the one given, its root position that of its own
-/// travelling joint (`root` -1) or of the joint given. Only clips that hold a window are encoded.
+/// Encodes a clip at its natural stride (`stride` 0) or the given one. Its root position is that of its own
+/// travelling joint (`root` -1) or of the given joint. Clips too short for a window are not encoded.
 inline EncodedClip encode_clip(Motion motion, const DatasetOptions& options, std::size_t stride, int root) {
   const auto [frames, rate] = std::pair{options.frames, options.rate};
   EncodedClip out;
@@ -95,32 +95,31 @@ inline EncodedClip encode_clip(Motion motion, const DatasetOptions& options, std
   if (std::abs(motion.rate / target - 1) > 1e-6) motion = resample(motion, target);
   out.frames = motion.frames;
   out.poses = PoseLayout(out.skeleton, options.root_position, static_cast<std::size_t>(out.root),
-                         options.root_rotation)
+                         options.rotation())
                   .encode(motion, out.stride);
   return out;
 }
 
-/// Error unless both skeletons have the same joints, parents and channels; bone lengths may differ by
-/// subject.
+/// Throws Error unless both skeletons have the same joints, parents and channels; bone lengths may differ.
 inline void check_same_joints(const Skeleton& a, const std::string& a_name, const Skeleton& b,
                               const std::string& b_name) {
   for (std::size_t j = 0; j < std::min(a.size(), b.size()); ++j) {
     const Joint &x = a.joints[j], &y = b.joints[j];
-    const char* what = x.name != y.name           ? "another name"
-                       : x.parent != y.parent     ? "another parent"
-                       : x.channels != y.channels ? "other channels"
+    const char* what = x.name != y.name           ? "different names"
+                       : x.parent != y.parent     ? "different parents"
+                       : x.channels != y.channels ? "different channels"
                                                   : nullptr;
     require(what == nullptr, "clips '", a_name, "' and '", b_name, "' have different skeletons: joint ", j,
             ", '", x.name, "' and '", y.name, "', has ", what ? what : "", "; a data set needs one skeleton");
   }
   require(
       a.size() == b.size(), "clips '", a_name, "' and '", b_name, "' have different skeletons: ", a.size(),
-      " and ", b.size(), " joints, the first without a partner is '",
+      " and ", b.size(), " joints, the first unmatched joint is '",
       (a.size() > b.size() ? a : b).joints[std::min(a.size(), b.size()) % std::max(a.size(), b.size())].name,
       "'; a data set needs one skeleton");
 }
 
-/// All BVH files of a folder and the folders in it, sorted; or the file itself. Error if there is none.
+/// All BVH files in a folder and its subfolders, sorted; or the file itself. Throws Error if there are none.
 inline std::vector<std::filesystem::path> find_bvh_files(const std::filesystem::path& where) {
   namespace fs = std::filesystem;
   std::error_code problem;
@@ -134,13 +133,13 @@ inline std::vector<std::filesystem::path> find_bvh_files(const std::filesystem::
     if (extension == ".bvh" && !entries->is_directory()) out.push_back(entries->path());
   }
   require(!problem, "folder ", where.string(), " cannot be read: ", problem.message());
-  require(!out.empty(), "folder ", where.string(), " and the folders in it have no .bvh file");
+  require(!out.empty(), "folder ", where.string(), " and its subfolders have no .bvh file");
   std::sort(out.begin(), out.end());
   return out;
 }
 
-/// Ids of the files: their names without extension, or, where two files share a name, their paths below
-/// `folder` without extension (`01/walk`).
+/// Ids of the files: file names without extension or, where two files share a name, paths below `folder`
+/// without extension (`01/walk`).
 inline std::vector<std::string> clip_ids(const std::vector<std::filesystem::path>& files,
                                          const std::filesystem::path& folder) {
   std::map<std::string, int> uses;

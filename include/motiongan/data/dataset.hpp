@@ -1,4 +1,4 @@
-// Captioned clips cut into windows for training (SPEC section 6).
+// Captioned clips cut into windows for training.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace motiongan::motion {
 struct DatasetClip {
   std::string id;
   std::vector<std::string> captions;
-  std::vector<std::vector<int>> sentences;  ///< the captions' words as numbers of the vocabulary
+  std::vector<std::vector<int>> sentences;  ///< the captions as word indices of the vocabulary
   std::size_t frames = 0;
   std::vector<float> poses;  ///< [frames, kept dof]
 };
@@ -32,16 +32,16 @@ struct SkippedClip {
   std::string reason;
 };
 
-/// Clips as windows of `frames` poses at `rate`, and all that is needed to turn poses back into motion.
+/// Clips as windows of `frames` poses at `rate`, and everything needed to convert poses back to motion.
 ///
 /// A window takes every stride-th frame of a clip, from any frame that leaves room for it. Dimensions in
-/// `format.relative_dims` (the root's x, z and yaw) are stored over their deviation and become relative when
-/// a window is drawn: value[start + i * stride] - value[start]. Where the layout has a yaw, x and z are then
-/// turned back by the yaw of the window's first frame: every window begins at the origin and faces the same
-/// way, wherever and whichever way it was recorded. All other dimensions are normalised by mean and deviation
-/// over all frames of the training clips. With RootRotation::velocity nothing is relative: steps and turns
-/// are those over `stride` frames of the clip, the distance of a window's frames; those of a window's first
-/// frame lead to it from the frame before the window.
+/// `format.relative_dims` (the root's x, z and yaw) are stored divided by their deviation and become relative
+/// when a window is drawn: value[start + i * stride] - value[start]. If the layout has a yaw, x and z are
+/// then rotated back by the yaw of the window's first frame: every window starts at the origin facing the
+/// same way, wherever it was recorded. All other dimensions are normalised by mean and deviation over all
+/// frames of the training clips. With RootRotation::velocity nothing is relative: steps and turns are
+/// differences over `stride` frames of the clip, the distance between a window's frames; those of a window's
+/// first frame lead to it from the frame before the window.
 class Dataset {
  public:
   MotionFormat format;  ///< skeleton of the first clip used, statistics and vocabulary of the training clips
@@ -50,30 +50,31 @@ class Dataset {
   std::vector<DatasetClip> test;
   std::vector<SkippedClip> skipped;  ///< clips that are too short
   std::size_t stride = 1;            ///< frames of a clip between two frames of a window
-  std::size_t named = 0;             ///< clips whose caption was made from their name
-  std::size_t dropped_frames = 0;    ///< T-pose frames taken from the clips' starts
+  std::size_t named = 0;             ///< clips captioned by their name
+  std::size_t dropped_frames = 0;    ///< T-pose frames removed from the starts of clips
 
-  /// All BVH files in a folder and the folders in it, in sorted order, or one file.
+  /// Loads all BVH files in a folder and its subfolders, in sorted order, or one file.
   ///
   /// Only clips of at least frames / rate seconds are used. A clip keeps its rate if that is a multiple of
   /// `rate`; otherwise it is resampled to the largest multiple of `rate` below it (to `rate` itself if it is
-  /// slower). With clips of several rates the smallest stride counts for all, and the others are resampled.
-  /// Captions are found by the file's name without extension (or its path below the folder); a clip that has
-  /// none takes one from its name. Error for an empty folder, unreadable files, different skeletons, and if
-  /// no clip is long enough.
+  /// slower). With clips of several rates, the smallest stride applies to all and the others are resampled.
+  /// Captions are looked up by file name without extension (or path below the folder); a clip without a
+  /// caption gets one from its name. Throws Error for an empty folder, unreadable files, different skeletons,
+  /// and if no clip is long enough.
   static Dataset from_bvh(const std::filesystem::path& folder_or_file, const DatasetOptions& options = {});
 
   /// The same from motions in memory; `options.first_frame` does not apply. Captions in `options.captions`,
-  /// if given, come before those of the motions.
+  /// if given, take precedence over those of the motions.
   static Dataset from_motions(const std::vector<LabelledMotion>& motions, const DatasetOptions& options = {});
 
-  /// How many windows the clip holds: a window may start at any frame below this. At least 1.
+  /// Number of windows in the clip: one may start at any frame below it. At least 1.
   std::size_t starts(const DatasetClip& clip) const {
     const std::size_t reach = (format.frames - 1) * stride;
     return clip.frames > reach ? clip.frames - reach : 0;
   }
 
-  /// The window that starts at frame `start`, [format.frames, kept dof], into `out`.
+  /// Writes the normalised window that starts at frame `start`, [format.frames, kept dof], into `out`. Throws
+  /// Error if `start` is out of range or `out` has the wrong size.
   void window(const DatasetClip& clip, std::size_t start, std::span<float> out) const {
     const std::size_t dof = format.dof();
     require(start < starts(clip), "window start ", start, " of clip '", clip.id, "', expected less than ",
@@ -85,12 +86,12 @@ class Dataset {
     format.make_relative(out);
   }
 
-  /// Motion of a window's poses.
+  /// The motion of a window's poses, [format.frames, kept dof].
   Motion to_motion(std::span<const float> normalised_window) const {
     return format.to_motion(normalised_window);
   }
 
-  /// Writes which clip is in which part, one a line: `train <TAB> id`.
+  /// Writes the split, one clip per line: `train <TAB> id` or `test <TAB> id`.
   void write_split(const std::filesystem::path& path) const {
     std::string text = concat("# split of ", train.size() + test.size(), " clips, seed ", options.split_seed,
                               ", training share ", options.train_share, "\n");

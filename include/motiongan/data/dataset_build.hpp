@@ -1,4 +1,4 @@
-// How a Dataset is made of clips. Included by dataset.hpp.
+// Construction of a Dataset. Included by dataset.hpp.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -28,13 +28,13 @@ inline std::string two_decimals(double value) {
   return text;
 }
 
-/// A clip that will be used, and where it came from.
+/// A clip that will be used, and its source.
 struct Used {
   std::size_t source = 0;
   EncodedClip clip;
 };
 
-/// Encodes all sources that hold a window, all at one stride and with one root joint.
+/// Encodes all sources long enough for a window, all at one stride and with one root joint.
 inline std::vector<Used> encode_all(const std::vector<ClipSource>& sources, Dataset& data, int& root) {
   const DatasetOptions& o = data.options;
   std::vector<EncodedClip> clips(sources.size());
@@ -70,16 +70,16 @@ inline std::vector<Used> encode_all(const std::vector<ClipSource>& sources, Data
     check_same_joints(used.front().clip.skeleton, sources[used.front().source].id, u.clip.skeleton,
                       sources[u.source].id);
     data.stride = std::min(data.stride, u.clip.stride);
-    root = std::max(root, u.clip.root);  // a clip in which nothing travels says 0
+    root = std::max(root, u.clip.root);  // 0 for a clip in which nothing travels
   }
   in_two_threads(used.size(), [&](std::size_t i) {
     EncodedClip& clip = used[i].clip;
     if (clip.stride == data.stride &&
-        (clip.root == root || (!o.root_position && o.root_rotation == RootRotation::expmap)))
+        (clip.root == root || (!o.root_position && o.rotation() == RootRotation::expmap)))
       return;
     clip = encode_clip(sources[used[i].source].load(), o, data.stride, root);
   });
-  // Resampling rounds a clip's length down to whole frames: it may have lost its only window.
+  // Resampling rounds a clip's length down to whole frames, which may cost it its only window.
   std::erase_if(used, [&](const Used& u) {
     if (u.clip.frames > (o.frames - 1) * data.stride) return false;
     data.skipped.push_back(
@@ -109,8 +109,8 @@ inline std::vector<std::string> captions_of(const ClipSource& source, const Capt
   return out;
 }
 
-/// Mean and deviation of the training clips; for the root's x, z and yaw, unless they are steps and turns,
-/// those of windows.
+/// Mean and deviation over the training clips; for the root's x, z and yaw, unless they are steps and turns,
+/// over training windows.
 inline Normalizer fit_normalizer(const std::vector<Used>& used, const std::vector<bool>& is_train,
                                  const PoseLayout& layout, std::size_t frames, std::size_t stride) {
   const std::size_t dof = layout.dof();
@@ -131,8 +131,8 @@ inline Normalizer fit_normalizer(const std::vector<Used>& used, const std::vecto
   });
   for (double& s : std) s = std::sqrt(s / static_cast<double>(rows));
 
-  // Dimensions that count from a window's first frame: mean 0, root mean square over all windows. x and z
-  // share theirs where windows are turned or hold steps, so that a turn stays a turn.
+  // Dimensions relative to a window's first frame: mean 0, root mean square over all windows. x and z share
+  // one scale if windows are rotated or hold steps, so that rotations in the ground plane are preserved.
   std::vector<std::size_t> relative;
   if (layout.root_position() && !layout.has_steps())
     relative = {layout.position_dim(), layout.position_dim() + 2};
@@ -160,8 +160,8 @@ inline Normalizer fit_normalizer(const std::vector<Used>& used, const std::vecto
   return Normalizer(std::move(mean), std::move(std));
 }
 
-/// The range of the training windows: over all frames, and for relative dimensions over windows; where a clip
-/// has more than 200 window starts, over at most 200 of them, evenly spread.
+/// The range of the training windows: over all frames and, for relative dimensions, over windows (at most 200
+/// evenly spaced ones per clip).
 inline void fit_range(Dataset& data) {
   MotionFormat& format = data.format;
   const std::size_t dof = format.dof();
@@ -193,9 +193,9 @@ inline void fit_range(Dataset& data) {
 }
 
 inline Dataset build(const std::vector<ClipSource>& sources, const DatasetOptions& options) {
-  require(options.frames > 0, "a window of 0 frames was asked for, expected at least 1");
-  require(std::isfinite(options.rate) && options.rate > 0, "a rate of ", options.rate,
-          " frames per second was asked for, expected more than 0");
+  require(options.frames > 0, "frames is 0, expected at least 1");
+  require(std::isfinite(options.rate) && options.rate > 0, "rate is ", options.rate,
+          " frames per second, expected more than 0");
   require(!sources.empty(), "a data set needs at least one clip");
   std::set<std::string> ids;
   for (const ClipSource& s : sources) require(ids.insert(s.id).second, "two clips are called '", s.id, "'");
@@ -208,7 +208,7 @@ inline Dataset build(const std::vector<ClipSource>& sources, const DatasetOption
 
   MotionFormat& format = data.format;
   format.layout = PoseLayout(used.front().clip.skeleton, options.root_position,
-                             static_cast<std::size_t>(root), options.root_rotation);
+                             static_cast<std::size_t>(root), options.rotation());
   for (const Joint& joint : format.skeleton().joints)
     require(is_utf8(joint.name), "clip '", sources[used.front().source].id, "' has a joint called '",
             joint.name, "', which is not UTF-8; a model file cannot hold it: rename the joint");
@@ -223,7 +223,7 @@ inline Dataset build(const std::vector<ClipSource>& sources, const DatasetOption
     const bool yaw = layout.has_yaw() && kept[k] == layout.yaw_dim();
     if (ground || yaw) format.relative_dims.push_back(k);
   }
-  format.check();  // before clips are normalised: something must move
+  format.check();  // before normalising: throws if nothing moves
 
   std::vector<std::string> training_captions;
   for (std::size_t c = 0; c < used.size(); ++c) {

@@ -1,8 +1,9 @@
-// What a data set is made of, and how.
+// Options of a Dataset.
 #pragma once
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 
 #include "motiongan/data/first_frame.hpp"
 #include "motiongan/data/pose.hpp"
@@ -14,10 +15,36 @@ struct DatasetOptions {
   double rate = 4.0;                 ///< frames per second of a window
   std::filesystem::path captions{};  ///< lines of `clip id <TAB> description`; empty: captions from names
   bool root_position = true;         ///< whether the root's position is part of a pose
-  RootRotation root_rotation = RootRotation::heading;  ///< the papers: expmap; for long motion: velocity
-  double train_share = 0.67;                           ///< of the clips; the rest is for testing
+  /// expmap as in the papers, velocity for long motion; not set: heading.
+  std::optional<RootRotation> root_rotation = {};
+  double train_share = 0.67;                           ///< fraction of the clips; the rest is for testing
   std::uint64_t split_seed = 1;
   FirstFrame first_frame = FirstFrame::automatic;  ///< for BVH files
+
+  RootRotation rotation() const { return root_rotation.value_or(RootRotation::heading); }
+
+  void list_fields(FieldList& list) {
+    list.add(captions, {.key = "captions",
+                        .help = "file of lines `clip id <TAB> description` [FOLDER/captions.tsv, else from "
+                                "file names]",
+                        .type = "FILE"});
+    list.add(frames, {.key = "frames",
+                      .help = "frames of a motion; a power of two where a network is a CNN",
+                      .range = Range::at_least(1)});
+    list.add(rate, {.key = "rate", .help = "frames per second", .range = Range::above(0)});
+    list.add(root_position,
+             {.key = "root_position", .help = "learn where the root is, not only how it turns"});
+    list.add(root_rotation, {.key = "root_rotation",
+                             .help = "heading: place and turn, every motion starts facing the same way; "
+                                     "velocity: steps and turns, for motion of any length; expmap: as the "
+                                     "papers; auto: velocity for an RNN generator, else heading"});
+    list.add(first_frame, {.key = "first_frame",
+                           .help = "auto: drop a T-pose that precedes the motion; keep; drop: the first frame"});
+    list.add(train_share, {.key = "train_share",
+                           .help = "fraction of the clips to train on; the rest is held out for testing",
+                           .range = Range::between(0, 1)});
+    list.add(split_seed, {.key = "split_seed", .help = "selects which clips those are"});
+  }
 };
 
 }  // namespace motiongan::motion

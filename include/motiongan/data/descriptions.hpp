@@ -1,4 +1,4 @@
-// The distinct descriptions of clips: what a ranker chooses among.
+// The distinct descriptions of clips: the candidates of a ranker.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -12,16 +12,16 @@
 
 namespace motiongan::motion {
 
-/// Descriptions of a set of clips, each once. Two are the same when their words are: "Run / jog" and "run
-/// jog". So clips with equal captions have the same right answer.
+/// The distinct descriptions of a set of clips. Two are the same if their words are: "Run / jog" and "run
+/// jog". Clips with equal captions thus have the same correct answer.
 struct Descriptions {
-  std::vector<std::string> texts;                 ///< most clips first, then in the order of their words
-  std::vector<std::size_t> clips;                 ///< how many clips have each
-  std::vector<std::vector<std::size_t>> of_clip;  ///< the numbers of each clip's descriptions, increasing
+  std::vector<std::string> texts;                 ///< most clips first, then sorted by words
+  std::vector<std::size_t> clips;                 ///< number of clips with each
+  std::vector<std::vector<std::size_t>> of_clip;  ///< indices of each clip's descriptions, ascending
 
   std::size_t size() const { return texts.size(); }
 
-  /// The `count` that most clips have, or all; clips that have none of them are left without.
+  /// The `count` most frequent ones, or all; clips with none of these keep no description.
   Descriptions most_popular(std::size_t count) const {
     Descriptions out = *this;
     if (count >= size()) return out;
@@ -32,7 +32,7 @@ struct Descriptions {
   }
 };
 
-/// The descriptions of `clips`, in whose order `of_clip` is.
+/// The distinct descriptions of `clips`; `of_clip` is in the order of `clips`.
 inline Descriptions distinct_descriptions(std::span<const DatasetClip> clips) {
   struct Entry {
     std::string text;

@@ -1,9 +1,10 @@
-// Finding and dropping the T-pose that some conversions put in front of a clip.
+// Finding and dropping the T-pose that some conversions prepend to a clip.
 #pragma once
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
+#include "motiongan/core/fields.hpp"
 #include "motiongan/core/error.hpp"
 #include "motiongan/motion/skeleton.hpp"
 
@@ -13,8 +14,11 @@ namespace motiongan::motion {
 enum class FirstFrame {
   automatic,  ///< drop the frames that t_pose_frames finds
   keep,
-  drop  ///< drop frame 0, whatever it is
+  drop  ///< always drop frame 0
 };
+constexpr NameTable<FirstFrame, 3> enum_names(FirstFrame) {
+  return {{{FirstFrame::automatic, "auto"}, {FirstFrame::keep, "keep"}, {FirstFrame::drop, "drop"}}};
+}
 
 namespace first_frame_detail {
 
@@ -50,10 +54,10 @@ inline double step_between(const Clip& clip, std::size_t a, std::size_t b) {
 
 }  // namespace first_frame_detail
 
-/// How many frames at the start are a pose put in front of the motion: up to four frames whose rotations are
-/// whole numbers of degrees and mostly zero (in the CMU files all but seven, which are angles such as 21),
-/// followed by a jump of over a degree and over three times the step after it. 0 where the clip starts with
-/// its motion.
+/// Number of frames at the start that are a pose prepended to the motion: up to four frames whose rotations
+/// are whole numbers of degrees and mostly zero (in the CMU files all but seven, which are angles such as
+/// 21), followed by a jump of more than one degree and more than three times the next step. 0 if the clip
+/// starts with its motion.
 inline std::size_t t_pose_frames(const Clip& clip) {
   namespace detail = first_frame_detail;
   require(clip.channels.size() == clip.frames * clip.skeleton.channel_count(), "clip '", clip.id, "' has ",
@@ -67,7 +71,7 @@ inline std::size_t t_pose_frames(const Clip& clip) {
   return jump > 1 && jump > 3 * step ? posed : 0;
 }
 
-/// Removes the first frames that `rule` asks for; returns how many.
+/// Removes the first frames according to `rule`; returns how many.
 inline std::size_t drop_first_frames(Clip& clip, FirstFrame rule) {
   std::size_t count = 0;
   if (rule == FirstFrame::automatic) count = t_pose_frames(clip);

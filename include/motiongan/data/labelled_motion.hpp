@@ -1,4 +1,4 @@
-// A motion together with what people say about it.
+// A motion with its descriptions.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,9 +7,9 @@
 
 namespace motiongan::motion {
 
-/// A clip as training sees it: the motion and one or more descriptions that are all true of it.
+/// A clip for training: the motion and one or more descriptions, each of which is true of it.
 struct LabelledMotion {
-  std::string id;  ///< unique within a data set; the file's name without folder and extension
+  std::string id;  ///< unique within a data set; file name without folder and extension
   Motion motion;
   std::vector<std::string> captions;
 };

@@ -1,4 +1,4 @@
-// What must be known about motion to use a trained model: everything of a data set but its clips.
+// What is needed to use a trained model: everything in a data set except its clips.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@
 
 namespace motiongan::motion {
 
-/// How the numbers that a network sees become motion, and captions become numbers.
+/// Conversion between network values and motion, and between captions and word indices.
 struct MotionFormat {
   PoseLayout layout;  ///< holds the skeleton
   Normalizer normalizer;
@@ -26,35 +26,35 @@ struct MotionFormat {
   double rate = 0;         ///< frames per second of a window
   std::size_t frames = 0;  ///< N, frames of a window
 
-  /// Kept dimensions (indices 0 .. kept dof - 1) that are counted from the first frame of each window: the
-  /// root's x, z (y is up) and yaw, so that it does not matter where in the room a motion was recorded. Their
-  /// mean is 0 and their deviation is the root mean square over windows. None with RootRotation::velocity.
+  /// Kept dimensions (indices 0 .. kept dof - 1) that are relative to the first frame of each window: the
+  /// root's x, z (y is up) and yaw, so that it does not matter where a motion was recorded. Their mean is 0
+  /// and their deviation is the root mean square over windows. None with RootRotation::velocity.
   std::vector<std::size_t> relative_dims;
 
-  /// Smallest and largest value of each kept dimension over the windows of the training clips, as a network
-  /// sees them (normalised); empty: not known.
+  /// Smallest and largest normalised value of each kept dimension over the training windows; empty if
+  /// unknown.
   std::vector<double> low, high;
 
   const Skeleton& skeleton() const { return layout.skeleton(); }
 
-  /// Numbers per frame that a network sees.
+  /// Values per frame that a network sees.
   std::size_t dof() const { return normalizer.kept_dof(); }
 
-  /// Whether kept dimension k is counted from the window's first frame, [kept dof].
+  /// Whether each kept dimension is relative to the window's first frame, [kept dof].
   std::vector<bool> relative_mask() const {
     std::vector<bool> mask(dof(), false);
     for (const std::size_t k : relative_dims) mask.at(k) = true;
     return mask;
   }
 
-  /// The kept dimensions that a window's turn concerns; yaw = value * yaw_scale in radians.
+  /// The kept dimensions involved in rotating a window; yaw = value * yaw_scale in radians.
   struct Turning {
     std::size_t x, z, yaw;
     double yaw_scale;
   };
 
-  /// Where windows are turned to face the same way: the layout has a yaw and a position, and all three are
-  /// kept.
+  /// Set if windows are rotated to face the same way: the layout has heading and position, and x, z and yaw
+  /// are all kept.
   std::optional<Turning> turning() const {
     if (layout.root_rotation() != RootRotation::heading || !layout.root_position()) return std::nullopt;
     const auto& kept = normalizer.kept();
@@ -67,14 +67,14 @@ struct MotionFormat {
     return t;
   }
 
-  /// Brings normalised poses [any number of frames, dof()] into the form of a window: relative dimensions are
-  /// counted from the first frame, and x and z turned back by its yaw.
+  /// Converts normalised poses [any number of frames, dof()] to window form, in place: relative dimensions
+  /// are counted from the first frame, and x and z rotated back by its yaw.
   template <class T>
   void make_relative(std::span<T> poses) const {
     const std::optional<Turning> turned = turning();
     const double yaw =
         turned && !poses.empty() ? static_cast<double>(poses[turned->yaw]) * turned->yaw_scale : 0;
-    // The first row is needed for all: it becomes zero last.
+    // Backwards, because all rows need the first one, which becomes zero.
     for (std::size_t i = poses.size() / dof(); i-- > 0;) {
       T* const pose = &poses[i * dof()];
       for (const std::size_t k : relative_dims) pose[k] -= poses[k];
@@ -86,23 +86,23 @@ struct MotionFormat {
     }
   }
 
-  /// The motion of normalised poses [any number of frames, dof()], at `rate`. Relative dimensions count from
-  /// the origin; steps and turns from `track`, see PoseLayout::decode.
+  /// The motion of normalised poses [any number of frames, dof()], at `rate`. Relative dimensions start at
+  /// the origin; steps and turns are integrated from `track`, see PoseLayout::decode.
   Motion to_motion(std::span<const float> normalised, RootTrack* track = nullptr) const {
     const std::vector<double> poses = normalizer.denormalize(normalised);
     return layout.decode(poses, poses.size() / layout.dof(), rate, track);
   }
 
-  /// Error, naming the joints, unless motion of the skeleton `other` can be this format's; bone lengths and
-  /// channels may differ. `what` is what the message calls its owner, such as "the prior walk.bvh".
+  /// Throws Error, naming the joints, unless `other` has the same joints as this format; bone lengths and
+  /// channels may differ. `what` names its owner in the message, such as "the prior walk.bvh".
   void require_skeleton(const Skeleton& other, const std::string& what) const {
     require_same_joints(skeleton(), other, what);
   }
 
-  /// A motion as a network sees it, [prior.frames, dof()]: normalised, in the form of a window.
-  /// place(to_motion(encode_window(prior)), prior) is the prior again, but for dimensions that are dropped.
-  /// Exponential maps begin within half a turn, as those of a clip do.
-  /// Error if the motion has another skeleton or another rate.
+  /// A motion as a network sees it, [prior.frames, dof()]: normalised, in window form.
+  /// place(to_motion(encode_window(prior)), prior) reproduces the prior except for dropped dimensions.
+  /// Exponential maps start within half a turn, as those of a clip do. Throws Error if the motion has another
+  /// skeleton or another rate.
   std::vector<float> encode_window(const Motion& prior) const {
     require_skeleton(prior.skeleton, "the motion to encode");
     require(std::abs(prior.rate / rate - 1) < 1e-6, "the motion to encode has ", prior.rate,
@@ -112,15 +112,16 @@ struct MotionFormat {
     return {poses.begin(), poses.end()};
   }
 
-  /// A motion made by to_motion, moved over the ground: in its first frame the root stands and faces as in
-  /// the prior's first frame (x, z and yaw; with RootRotation::expmap, which keeps the facing, x and z).
+  /// Moves a motion from to_motion over the ground so that in its first frame the root is placed and faces as
+  /// in the prior's first frame (x, z and yaw; with RootRotation::expmap, which keeps the heading, only x and
+  /// z). Throws Error if the number of joints differs.
   Motion place(Motion made, const Motion& prior) const {
     require(made.skeleton.size() == skeleton().size(), "a motion of ", made.skeleton.size(),
             " joints cannot be placed, expected ", skeleton().size());
     return placed_at(std::move(made), layout.root(), layout.track_of(prior, 0), layout.has_yaw());
   }
 
-  /// Error unless the parts fit each other.
+  /// Throws Error unless the members are consistent.
   void check() const {
     require(layout.skeleton().size() > 0, "a motion format has no skeleton");
     require(normalizer.full_dof() == layout.dof(), "a normalizer of ", normalizer.full_dof(),

@@ -1,4 +1,4 @@
-// A MotionFormat as JSON: the part of a model file that says what its numbers mean.
+// A MotionFormat as JSON, the part of a model file that gives meaning to its values.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -13,27 +13,20 @@
 #include "motiongan/core/error.hpp"
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/data/motion_format.hpp"
+#include "motiongan/io/fields_json.hpp"
 
 namespace motiongan::io {
 
-namespace motion_format_detail {
-
-/// In the order of motion::RootRotation.
-inline constexpr std::array<std::string_view, 3> root_rotation_names{"expmap", "heading", "velocity"};
-
-}  // namespace motion_format_detail
-
-/// {"skeleton": HIERARCHY text, "root": joint name, "root_position", "root_rotation": "expmap", "heading"
-/// or "velocity", "rate", "frames", "mean": [full dof], "std": [full dof], "relative_dims": [...],
-/// "vocabulary": [words]}, and, where the training range is known, "low" and "high": [kept dof]; every number
-/// comes back exactly.
+/// {"skeleton": HIERARCHY text, "root": joint name, "root_position", "root_rotation": "expmap", "heading" or
+/// "velocity", "rate", "frames", "mean": [full dof], "std": [full dof], "relative_dims": [...], "vocabulary":
+/// [words]} and, if the training range is known, "low" and "high": [kept dof]. Every number round-trips
+/// exactly. Throws Error for an inconsistent format.
 inline nlohmann::json to_json(const motion::MotionFormat& format) {
   format.check();
   nlohmann::json json = {{"skeleton", motion::format_hierarchy(format.skeleton())},
                          {"root", format.skeleton().joints[format.layout.root()].name},
                          {"root_position", format.layout.root_position()},
-                         {"root_rotation", motion_format_detail::root_rotation_names.at(
-                                               static_cast<std::size_t>(format.layout.root_rotation()))},
+                         {"root_rotation", name_of(format.layout.root_rotation())},
                          {"rate", format.rate},
                          {"frames", format.frames},
                          {"mean", format.normalizer.mean()},
@@ -49,12 +42,12 @@ inline nlohmann::json to_json(const motion::MotionFormat& format) {
 
 namespace motion_format_detail {
 
-/// Whether the value is a whole number of at least 0, however it came into the JSON.
+/// Whether the value is a non-negative integer, signed or unsigned in the JSON.
 inline bool is_count(const nlohmann::json& value) {
   return value.is_number_unsigned() || (value.is_number_integer() && value.get<long long>() >= 0);
 }
 
-/// The member `key` as a T; Error if it is missing or something else.
+/// The member `key` as a T. Throws Error if it is missing or of another type.
 template <class T>
 T read(const nlohmann::json& json, const char* key, const char* expected) {
   const auto at = json.find(key);
@@ -82,8 +75,8 @@ T read(const nlohmann::json& json, const char* key, const char* expected) {
 
 }  // namespace motion_format_detail
 
-/// The inverse of to_json. Error, naming the member, for anything that is missing, of another type or does
-/// not fit the rest.
+/// Inverse of to_json. Throws Error, naming the member, if one is missing, of another type or inconsistent
+/// with the rest.
 inline motion::MotionFormat motion_format_from_json(const nlohmann::json& json) {
   using motion_format_detail::read;
   require(json.is_object(), "a motion format is ", json.type_name(), ", expected a JSON object");
@@ -93,21 +86,17 @@ inline motion::MotionFormat motion_format_from_json(const nlohmann::json& json) 
   const auto root_name = read<std::string>(json, "root", "a joint's name");
   const int root = skeleton.find(root_name);
   require(root >= 0, "the motion format's root '", root_name, "' is not a joint of its skeleton");
-  constexpr const char* forms = "\"expmap\", \"heading\" or \"velocity\"";
-  const auto root_rotation = read<std::string>(json, "root_rotation", forms);
-  const auto& names = motion_format_detail::root_rotation_names;
-  const auto form = std::find(names.begin(), names.end(), root_rotation);
-  require(form != names.end(), "the motion format's root_rotation is \"", root_rotation, "\", expected ",
-          forms);
+  const auto root_rotation = enum_from<motion::RootRotation>(
+      read<std::string>(json, "root_rotation", "\"expmap\", \"heading\" or \"velocity\""),
+      "the motion format's root_rotation");
   format.layout = motion::PoseLayout(std::move(skeleton), read<bool>(json, "root_position", "true or false"),
-                                     static_cast<std::size_t>(root),
-                                     static_cast<motion::RootRotation>(form - names.begin()));
+                                     static_cast<std::size_t>(root), root_rotation);
   format.rate = read<double>(json, "rate", "frames per second");
   format.frames = read<std::size_t>(json, "frames", "a whole number, 1 or more");
   format.normalizer = motion::Normalizer(read<std::vector<double>>(json, "mean", "numbers"),
                                          read<std::vector<double>>(json, "std", "numbers"));
   format.relative_dims = read<std::vector<std::size_t>>(json, "relative_dims", "whole numbers");
-  // Files from before the range was kept have none.
+  // Older files have no training range.
   if (json.contains("low") || json.contains("high")) {
     format.low = read<std::vector<double>>(json, "low", "numbers");
     format.high = read<std::vector<double>>(json, "high", "numbers");
@@ -116,6 +105,18 @@ inline motion::MotionFormat motion_format_from_json(const nlohmann::json& json) 
   format.vocabulary = motion::Vocabulary(read<std::vector<std::string>>(json, "vocabulary", "words"));
   format.check();
   return format;
+}
+
+/// to_json as text, for a file's metadata.
+inline std::string to_text(const motion::MotionFormat& format) { return to_json(format).dump(); }
+
+/// Inverse of to_text. Throws Error; `where` names the file in the message.
+inline motion::MotionFormat motion_format_from_text(const std::string& text, const std::string& where) {
+  try {
+    return motion_format_from_json(parse_object(text, "the motion format"));
+  } catch (const Error& error) {
+    throw Error(where, ": ", error.what());
+  }
 }
 
 }  // namespace motiongan::io

@@ -1,4 +1,4 @@
-// Zero mean, unit spread, and no dimensions that never change.
+// Normalisation of pose dimensions to zero mean and unit deviation; constant dimensions are dropped.
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -10,19 +10,19 @@
 
 namespace motiongan::motion {
 
-/// Mean and standard deviation of every pose dimension. Dimensions whose deviation is below `min_std` are
-/// dropped, and restored as their mean (SPEC section 6).
+/// Mean and standard deviation of every pose dimension. Dimensions with a deviation below `min_std` are
+/// dropped, and restored as their mean.
 class Normalizer {
  public:
   static constexpr double min_std = 1e-4;
 
   Normalizer() = default;
 
-  /// Both [full dof]. Error if the sizes differ or a value is not finite or a deviation is negative.
+  /// Both [full dof]. Throws Error if the sizes differ, a value is not finite or a deviation is negative.
   Normalizer(std::vector<double> mean, std::vector<double> std)
       : mean_(std::move(mean)), std_(std::move(std)) {
     require(mean_.size() == std_.size(), "a normalizer got ", mean_.size(), " means and ", std_.size(),
-            " standard deviations, expected as many of each");
+            " standard deviations, expected equal numbers");
     for (std::size_t d = 0; d < mean_.size(); ++d) {
       require(std::isfinite(mean_[d]) && std::isfinite(std_[d]) && std_[d] >= 0, "dimension ", d,
               " has mean ", mean_[d], " and standard deviation ", std_[d],
@@ -31,10 +31,11 @@ class Normalizer {
     }
   }
 
-  /// From poses [frames, full dof]; deviations divide by the number of frames (ddof 0).
+  /// Statistics of poses [frames, full dof]; deviations divide by the number of frames (ddof 0). Throws Error
+  /// if there is no frame.
   static Normalizer fit(std::span<const double> poses, std::size_t full_dof) {
     check_rows(poses.size(), full_dof, "to fit a normalizer");
-    require(!poses.empty(), "a normalizer cannot be fitted to no frames");
+    require(!poses.empty(), "a normalizer needs at least one frame to be fitted");
     const std::size_t frames = poses.size() / full_dof;
     std::vector<double> mean(full_dof), std(full_dof);
     for (std::size_t i = 0; i < poses.size(); ++i) mean[i % full_dof] += poses[i];
@@ -49,12 +50,12 @@ class Normalizer {
 
   const std::vector<double>& mean() const { return mean_; }  ///< [full dof]
   const std::vector<double>& std() const { return std_; }    ///< [full dof]
-  /// Full dimension of each kept one, ascending, [kept dof].
+  /// Full dimension of each kept dimension, ascending, [kept dof].
   const std::vector<std::size_t>& kept() const { return kept_; }
   std::size_t full_dof() const { return mean_.size(); }
   std::size_t kept_dof() const { return kept_.size(); }
 
-  /// [frames, full dof] to [frames, kept dof].
+  /// Poses [frames, full dof] to normalised [frames, kept dof].
   template <class T>
   std::vector<T> normalize(std::span<const double> poses) const {
     check_rows(poses.size(), full_dof(), "to normalise");
@@ -65,7 +66,7 @@ class Normalizer {
     return out;
   }
 
-  /// [frames, kept dof] to [frames, full dof].
+  /// Normalised [frames, kept dof] to poses [frames, full dof].
   template <class T>
   std::vector<double> denormalize(std::span<const T> poses) const {
     check_rows(poses.size(), kept_dof(), "to de-normalise");

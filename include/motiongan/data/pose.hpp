@@ -1,5 +1,4 @@
-// The pose vector that networks see: exponential maps of the joints' local rotations, and the root's
-// position.
+// The pose vector of rotations: exponential maps of the joints' local rotations, and the root's position.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -8,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "motiongan/core/fields.hpp"
 #include "motiongan/core/error.hpp"
 #include "motiongan/motion/heading.hpp"
 #include "motiongan/motion/kinematics.hpp"
@@ -16,31 +16,35 @@
 
 namespace motiongan::motion {
 
-/// How the root's rotation stands in a pose vector.
+/// How a pose vector represents the root's rotation.
 enum class RootRotation {
-  expmap,   ///< as every other joint's (the papers)
+  expmap,   ///< like every other joint (the papers)
   heading,  ///< tilt about x, yaw about y, tilt about z: q = yaw * tilt, the tilt an exponential map without
             ///< y
-  velocity  ///< as heading, but yaw and the position's x and z as what they change by since the frame before
+  velocity  ///< as heading, but yaw and the position's x and z as changes since the previous frame
 };
+constexpr NameTable<RootRotation, 3> enum_names(RootRotation) {
+  return {{{RootRotation::expmap, "expmap"}, {RootRotation::heading, "heading"}, {RootRotation::velocity, "velocity"}}};
+}
 
-/// What each number of a pose vector means (SPEC section 6): for joint j, numbers 3j .. 3j + 2 are the
-/// exponential map of its local rotation in radians; then, if asked for, the position of the root joint (x,
-/// y, z in its parent's frame, in the file's unit).
+/// Layout of a pose vector: for joint j, values 3j .. 3j + 2 are the exponential map of its local rotation in
+/// radians; then, optionally, the position of the root joint (x, y, z in its parent's frame, in the file's
+/// unit).
 ///
-/// The root's exponential map is badly conditioned once somebody turns: near a whole turn its direction says
+/// The root's exponential map is badly conditioned once a body turns: near a full turn its direction says
 /// nothing about the rotation, near half a turn a small change tilts the body twice as much.
-/// RootRotation::heading keeps the turn in one number, however many turns it counts, and upright bodies stay
-/// near zero in the others.
+/// RootRotation::heading keeps the turn in one unwrapped value, and the others stay near zero for upright
+/// bodies.
 ///
-/// In a long motion, place and yaw leave whatever range a network was trained on. RootRotation::velocity
-/// holds the turn since the frame before, and, as x and z of the position, the step since the frame before in
-/// the heading's frame of the frame before (turned back by its yaw). Only y is then a place: the height.
+/// In a long motion, position and yaw leave whatever range a network was trained on. RootRotation::velocity
+/// instead holds the turn since the previous frame and, as x and z of the position, the step since the
+/// previous frame in that frame's heading (rotated back by its yaw). Only y, the height, remains absolute.
 class PoseLayout {
  public:
   PoseLayout() = default;
 
-  /// `root` is the joint whose position is kept (see moving_root). Error if the skeleton has no such joint.
+  /// `root` is the joint whose position is kept (see moving_root). Throws Error if the skeleton has no such
+  /// joint.
   explicit PoseLayout(Skeleton skeleton, bool root_position = true, std::size_t root = 0,
                       RootRotation root_rotation = RootRotation::expmap)
       : skeleton_(std::move(skeleton)),
@@ -56,29 +60,29 @@ class PoseLayout {
   std::size_t root() const { return root_; }
   RootRotation root_rotation() const { return root_rotation_; }
 
-  /// Numbers in a pose: 3 per joint, and 3 for the root's position.
+  /// Values per pose: 3 per joint, plus 3 for the root's position.
   std::size_t dof() const { return 3 * skeleton_.size() + (root_position_ ? 3 : 0); }
 
-  /// Index of the root position's x; Error where the layout has none.
+  /// Index of the root position's x. Throws Error if the layout has none.
   std::size_t position_dim() const {
     require(root_position_, "this pose layout has no root position");
     return 3 * skeleton_.size();
   }
 
-  /// Whether the root's rotation is kept as tilt and yaw (or turn).
+  /// Whether the root's rotation is stored as tilt and yaw (or turn).
   bool has_yaw() const { return root_rotation_ != RootRotation::expmap; }
 
-  /// Whether poses hold steps and turns, which decode() adds up.
+  /// Whether poses hold steps and turns, which decode() integrates.
   bool has_steps() const { return root_rotation_ == RootRotation::velocity; }
 
-  /// Index of the root's yaw, or of its turn; Error where the layout has none.
+  /// Index of the root's yaw, or of its turn. Throws Error if the layout has none.
   std::size_t yaw_dim() const {
     require(has_yaw(), "this pose layout has no yaw");
     return 3 * root_ + 1;
   }
 
   /// `LeftArm.x` for a rotation, `Hips.yaw` or `Hips.turn` for the root's yaw, `Hips.position.x` or
-  /// `Hips.step.x` for its position.
+  /// `Hips.step.x` for its position. Throws Error for a dimension that does not exist.
   std::string name(std::size_t dim) const {
     require(dim < dof(), "pose dimension ", dim, " does not exist; there are ", dof());
     const std::string& root = skeleton_.joints[root_].name;
@@ -88,13 +92,13 @@ class PoseLayout {
     return root + (has_steps() && part != "y" ? ".step." : ".position.") + part;
   }
 
-  /// The motion's poses, [frames, dof], exponential maps unwrapped over time. Error if the motion has another
-  /// number of joints. Positions of joints other than the root are not kept: decode() gives them their
-  /// offsets.
+  /// The motion's poses, [frames, dof], exponential maps unwrapped over time. Positions of joints other than
+  /// the root are lost: decode() gives these joints their offsets. Throws Error if the number of joints
+  /// differs.
   ///
-  /// Steps and turns (RootRotation::velocity) are differences over `step` frames, for poses of which every
-  /// step-th one will be used. The first `step` frames have no predecessor: they take the values of frame
-  /// `step`; zeros where there is none.
+  /// Steps and turns (RootRotation::velocity) are differences over `step` frames, for use of every step-th
+  /// pose. The first `step` frames have no predecessor: they take the values of frame `step`, or zeros if
+  /// there is none.
   std::vector<double> encode(const Motion& motion, std::size_t step = 1) const {
     check_motion(motion);
     require(step > 0, "poses cannot be encoded with a step of 0 frames, expected at least 1");
@@ -129,10 +133,10 @@ class PoseLayout {
 
   /// The motion of poses [frames, dof]. Without root position, every joint stays at its offset.
   ///
-  /// Steps and turns are added up from `track` (null: from the origin) on, which then tells where the last
-  /// frame stands: a motion decoded in pieces over one track is, bit for bit, the one decoded at once. The
-  /// first frame of a track that is not started stands at the track's x, z and yaw. Other root forms leave
-  /// the track alone.
+  /// Steps and turns are integrated from `track` (null: from the origin), which is updated to the last frame:
+  /// a motion decoded in pieces over one track is, bit for bit, the one decoded at once. If the track is not
+  /// started, the first frame is placed at its x, z and yaw. Other root representations leave the track
+  /// unchanged.
   Motion decode(std::span<const double> poses, std::size_t frames, double rate,
                 RootTrack* track = nullptr) const {
     require(poses.size() == frames * dof(), "found ", poses.size(), " pose values, expected ", frames,
@@ -161,13 +165,13 @@ class PoseLayout {
     return motion;
   }
 
-  /// Where the root stands in a frame of a motion of this skeleton, from which a continuation can go on. The
-  /// yaw is within half a turn of 0. Error if the motion has no such frame or another number of joints.
+  /// Position and heading of the root in a frame of a motion of this skeleton, for continuing it. The yaw is
+  /// within half a turn of 0. Throws Error if the motion has no such frame or another number of joints.
   RootTrack track_of(const Motion& motion, std::size_t frame) const {
     check_motion(motion);
     require(motion.skeleton.size() == skeleton_.size() && frame < motion.frames, "frame ", frame,
             " of a motion of ", motion.frames, " frames and ", motion.skeleton.size(),
-            " joints was asked for; the pose layout has ", skeleton_.size(), " joints");
+            " joints does not exist or does not fit the pose layout of ", skeleton_.size(), " joints");
     const Vec3& p = motion.position(frame, root_);
     return {p[0], p[2], heading_from_quat(motion.rotation(frame, root_))[1], true};
   }

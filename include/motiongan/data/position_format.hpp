@@ -1,4 +1,4 @@
-// What must be known about motion to use a trained model of positions and classes.
+// What is needed to use a trained model of positions and classes.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -18,7 +18,7 @@
 
 namespace motiongan::motion {
 
-/// A joint and the one above it.
+/// A joint and its parent.
 struct Bone {
   std::size_t joint = 0, parent = 0;
   friend bool operator==(const Bone&, const Bone&) = default;
@@ -26,7 +26,7 @@ struct Bone {
 
 namespace position_format_detail {
 
-/// How many letters must be put in, taken out or exchanged to make `b` of `a`.
+/// Levenshtein distance: insertions, deletions and substitutions that turn `a` into `b`.
 inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
@@ -44,21 +44,20 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace position_format_detail
 
-/// How the numbers that a network sees become positions, and names of classes become numbers (SPEC section
-/// 5).
+/// Conversion between network values and joint positions, and between class names and class indices.
 struct PositionFormat {
   PositionLayout layout;  ///< holds the skeleton
   Normalizer normalizer;
   double rate = 30;                  ///< frames per second
   std::size_t frames = 30;           ///< T, frames of a prior and of a future
-  std::vector<std::string> classes;  ///< names, in the order of the class numbers
+  std::vector<std::string> classes;  ///< names, in the order of class indices
 
   const Skeleton& skeleton() const { return layout.skeleton(); }
 
-  /// Numbers per frame that a network sees.
+  /// Values per frame that a network sees.
   std::size_t dof() const { return normalizer.kept_dof(); }
 
-  /// The bones that have a length at rest (a millionth of the mean or more), in the order of their joints.
+  /// The bones with a rest length (a millionth of the mean or more), in joint order.
   std::vector<Bone> bones() const {
     const std::vector<double> lengths = bone_lengths(skeleton());
     double sum = 0;
@@ -70,7 +69,7 @@ struct PositionFormat {
     return out;
   }
 
-  /// Mean rest length of bones(), in the file's unit; 0 where there is none.
+  /// Mean rest length of bones(), in the file's unit; 0 if there are none.
   double mean_bone_length() const {
     const std::vector<double> lengths = bone_lengths(skeleton());
     const std::vector<Bone> all = bones();
@@ -79,8 +78,8 @@ struct PositionFormat {
     return all.empty() ? 0 : sum / static_cast<double>(all.size());
   }
 
-  /// Bone vectors (joint - parent, in the body's frame, in the file's unit) of bones() are
-  /// bone_map() * normalised pose + bone_shift(): [3 * bones, dof()], row by row. At most two numbers of a
+  /// The linear map from normalised poses to vectors of bones(): bone_map() * pose + bone_shift() is joint -
+  /// parent, in the body's frame, in the file's unit. [3 * bones, dof()], row-major; at most two values per
   /// row are not 0.
   std::vector<double> bone_map() const {
     const std::vector<Bone> all = bones();
@@ -106,22 +105,24 @@ struct PositionFormat {
     return out;
   }
 
-  /// Positions [frames, joints] in the world as a network sees them, [frames, dof()].
+  /// World positions [frames, joints] as a network sees them, [frames, dof()].
   std::vector<float> encode(std::span<const Vec3> positions) const {
     return normalizer.normalize<float>(layout.encode(positions));
   }
 
-  /// Positions [frames, joints] of normalised poses [frames, dof()]; for `track` see PositionLayout::decode.
+  /// World positions [frames, joints] of normalised poses [frames, dof()]; for `track` see
+  /// PositionLayout::decode.
   std::vector<Vec3> decode(std::span<const float> poses, RootTrack* track = nullptr) const {
     return layout.decode(normalizer.denormalize(poses), track);
   }
 
-  /// Positions [frames, joints] of normalised poses [frames, dof()] that stand where `places` says.
+  /// World positions [frames, joints] of normalised poses [frames, dof()] placed at `places` [frames].
   std::vector<Vec3> restore(std::span<const float> poses, std::span<const RootTrack> places) const {
     return layout.restore(normalizer.denormalize(poses), places);
   }
 
-  /// The number of the class. Error, naming the classes there are and the most alike, for another name.
+  /// Index of the class. Throws Error, listing the classes and suggesting the most similar one, for an
+  /// unknown name.
   std::size_t class_index(std::string_view name) const {
     std::string known;
     std::size_t best = 0, fewest = static_cast<std::size_t>(-1);
@@ -133,17 +134,17 @@ struct PositionFormat {
     }
     const bool alike = !classes.empty() && 2 * fewest <= std::max<std::size_t>(name.size(), 2);
     throw Error("there is no class '", name, "'",
-                alike ? "; is '" + classes[best] + "' meant?" : std::string("."),
+                alike ? "; did you mean '" + classes[best] + "'?" : std::string("."),
                 " The classes are: ", known.empty() ? std::string("none") : known);
   }
 
-  /// Error, naming the joints, unless motion of the skeleton `other` can be this format's; bone lengths and
-  /// channels may differ. `what` is what the message calls its owner, such as "the prior walk.bvh".
+  /// Throws Error, naming the joints, unless `other` has the same joints as this format; bone lengths and
+  /// channels may differ. `what` names its owner in the message, such as "the prior walk.bvh".
   void require_skeleton(const Skeleton& other, const std::string& what) const {
     require_same_joints(skeleton(), other, what);
   }
 
-  /// Error unless the parts fit each other.
+  /// Throws Error unless the members are consistent.
   void check() const {
     require(skeleton().size() > 0, "a position format has no skeleton");
     require(normalizer.full_dof() == layout.dof(), "a normalizer of ", normalizer.full_dof(),

@@ -1,4 +1,4 @@
-// A PositionFormat as JSON: the part of a model file that says what its numbers mean.
+// A PositionFormat as JSON, the part of a model file that gives meaning to its values.
 #pragma once
 #include <cstddef>
 #include <nlohmann/json.hpp>
@@ -14,7 +14,7 @@
 namespace motiongan::io {
 
 /// {"skeleton": HIERARCHY text, "root_track", "rate", "frames", "mean": [full dof], "std": [full dof],
-/// "classes": [names]}; every number comes back exactly.
+/// "classes": [names]}. Every number round-trips exactly. Throws Error for an inconsistent format.
 inline nlohmann::json to_json(const motion::PositionFormat& format) {
   format.check();
   return {{"skeleton", motion::format_hierarchy(format.skeleton())},
@@ -26,8 +26,8 @@ inline nlohmann::json to_json(const motion::PositionFormat& format) {
           {"classes", format.classes}};
 }
 
-/// The inverse of to_json. Error, naming the member, for anything that is missing, of another type or does
-/// not fit the rest.
+/// Inverse of to_json. Throws Error, naming the member, if one is missing, of another type or inconsistent
+/// with the rest.
 inline motion::PositionFormat position_format_from_json(const nlohmann::json& json) {
   using motion_format_detail::read;
   require(json.is_object(), "a position format is ", json.type_name(), ", expected a JSON object");
@@ -43,6 +43,18 @@ inline motion::PositionFormat position_format_from_json(const nlohmann::json& js
   format.classes = read<std::vector<std::string>>(json, "classes", "names");
   format.check();
   return format;
+}
+
+/// to_json as text, for a file's metadata.
+inline std::string to_text(const motion::PositionFormat& format) { return to_json(format).dump(); }
+
+/// Inverse of to_text. Throws Error; `where` names the file in the message.
+inline motion::PositionFormat position_format_from_text(const std::string& text, const std::string& where) {
+  try {
+    return position_format_from_json(parse_object(text, "the position format"));
+  } catch (const Error& error) {
+    throw Error(where, ": ", error.what());
+  }
 }
 
 }  // namespace motiongan::io

@@ -1,4 +1,4 @@
-// The pose vector of joint positions: the body as seen from its own root, and the track that was taken away.
+// The pose vector of joint positions: the body relative to its root and heading, and the root's track.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -17,22 +17,22 @@
 
 namespace motiongan::motion {
 
-/// What each number of a pose of positions means (SPEC sections 5 and 6): for joint j, numbers 3j .. 3j + 2
-/// are its position from the root (joint 0), turned back by the body's yaw: R_y(-yaw) (p_j - p_root), in the
-/// file's unit; the root's own are 0. With `root_track` four more: the root's step in x and in z since the
-/// frame before, in the heading's frame of the frame before, its height y, and its turn since the frame
-/// before, in radians. The first frame takes step and turn of the second (zeros where there is none).
+/// Layout of a pose vector of positions: for joint j, values 3j .. 3j + 2 are its position relative to the
+/// root (joint 0), rotated back by the body's yaw: R_y(-yaw) (p_j - p_root), in the file's unit; the root's
+/// own are 0. With `root_track` four more: the root's step in x and in z since the previous frame, in that
+/// frame's heading, its height y, and its turn since the previous frame, in radians. The first frame takes
+/// the step and turn of the second (zeros if there is none).
 ///
-/// Yaw is told from positions alone, so that motion with and without rotations goes one way: the vectors from
-/// right to left joints (across_body) are added up and laid on the ground; the body faces at a right angle to
-/// the sum, and yaw 0 is facing +z with the left at +x. Where the sum is shorter than a thousandth of the
-/// mean bone (somebody lies on the side) the yaw of the frame before is kept. It is counted through whole
-/// turns. A body that nothing lies across has yaw 0.
+/// The yaw is computed from positions alone, so that motion with and without rotations is treated the same:
+/// the vectors from right to left joints (across_body) are summed and projected onto the ground; the body
+/// faces perpendicular to the sum, and yaw 0 is facing +z with the left at +x. If the sum is shorter than a
+/// thousandth of the mean bone (a body lying on its side), the previous frame's yaw is kept. The yaw is
+/// unwrapped over whole turns. A body without such joints has yaw 0.
 class PositionLayout {
  public:
   PositionLayout() = default;
 
-  /// Of `skeleton`, names, parents and offsets count. Error if it has no joints.
+  /// Uses the names, parents and offsets of `skeleton`. Throws Error if it has no joints.
   explicit PositionLayout(Skeleton skeleton, bool root_track = true)
       : skeleton_(std::move(skeleton)), root_track_(root_track), across_(across_body(skeleton_)) {
     require(skeleton_.size() > 0, "a position layout needs a skeleton of at least one joint");
@@ -44,10 +44,10 @@ class PositionLayout {
   const Skeleton& skeleton() const { return skeleton_; }
   bool root_track() const { return root_track_; }
 
-  /// Numbers in a pose: 3 per joint, and 4 with the root's track.
+  /// Values per pose: 3 per joint, plus 4 with the root's track.
   std::size_t dof() const { return 3 * skeleton_.size() + (root_track_ ? 4 : 0); }
 
-  /// Index of the step in x; step in z, height and turn follow. Error where the layout has no track.
+  /// Index of the step in x; step in z, height and turn follow. Throws Error if the layout has no track.
   std::size_t track_dim() const {
     require(root_track_, "this position layout has no root track");
     return 3 * skeleton_.size();
@@ -62,15 +62,15 @@ class PositionLayout {
     return skeleton_.joints[0].name + parts[dim - track_dim()];
   }
 
-  /// Where the root stands in every frame of positions [frames, joints]: x, z, height, and the yaw, counted
-  /// through whole turns from one within half a turn of 0. Error unless the positions are whole frames of
-  /// finite numbers.
+  /// Position and heading of the root in every frame of positions [frames, joints]: x, z, height, and the
+  /// unwrapped yaw, which starts within half a turn of 0. Throws Error unless the positions are whole frames
+  /// of finite numbers.
   std::vector<RootTrack> places(std::span<const Vec3> positions) const {
     check_rows(positions.size(), skeleton_.size(), "positions", "joints");
     const std::size_t joints = skeleton_.size(), frames = positions.size() / joints;
     std::vector<RootTrack> out(frames);
     double yaw = 0;
-    bool known = false;  // whether any frame so far tells a yaw
+    bool known = false;  // whether any frame so far determines a yaw
     for (std::size_t f = 0; f < frames; ++f) {
       const Vec3* const frame = &positions[f * joints];
       for (std::size_t j = 0; j < joints; ++j)
@@ -84,7 +84,7 @@ class PositionLayout {
       }
       if (std::hypot(x, z) > shortest_across_) {
         yaw = known ? unwrap_angle(std::atan2(-z, x), yaw) : std::atan2(-z, x);
-        // Frames before the first that tells face as it does: a turn there would be made up.
+        // Earlier frames take the first known yaw, so that no turn is made up.
         for (std::size_t before = known ? f : 0; before < f; ++before) out[before].yaw = yaw;
         known = true;
       }
@@ -93,21 +93,21 @@ class PositionLayout {
     return out;
   }
 
-  /// Where the root stands in a frame of positions [frames, joints], from which a continuation can go on.
+  /// Position and heading of the root in a frame of positions [frames, joints], for continuing it. Throws
   /// Error if there is no such frame.
   RootTrack track_of(std::span<const Vec3> positions, std::size_t frame) const {
     check_rows(positions.size(), skeleton_.size(), "positions", "joints");
-    require(frame < positions.size() / skeleton_.size(), "frame ", frame, " of ",
-            positions.size() / skeleton_.size(), " frames of positions was asked for");
+    require(frame < positions.size() / skeleton_.size(), "frame ", frame,
+            " does not exist, the positions have ", positions.size() / skeleton_.size(), " frames");
     return places(positions.first((frame + 1) * skeleton_.size())).back();
   }
 
-  /// The poses of positions [frames, joints] in the world, [frames, dof].
+  /// Poses [frames, dof] of world positions [frames, joints].
   std::vector<double> encode(std::span<const Vec3> positions) const {
     return encode(positions, places(positions));
   }
 
-  /// The same where places(positions) is already known.
+  /// The same if places(positions) is already known.
   std::vector<double> encode(std::span<const Vec3> positions, std::span<const RootTrack> places) const {
     const std::size_t joints = skeleton_.size(), frames = places.size(), width = dof();
     require(positions.size() == frames * joints, "found ", positions.size(), " positions, expected ", frames,
@@ -135,12 +135,12 @@ class PositionLayout {
     return out;
   }
 
-  /// The positions of poses [frames, dof], [frames, joints], in the world.
+  /// World positions [frames, joints] of poses [frames, dof].
   ///
-  /// Steps and turns are added up from `track` (null: from the origin) on, which then tells where the last
-  /// frame stands: positions decoded in pieces over one track are, bit for bit, those decoded at once. The
-  /// first frame of a track that is not started stands at the track's x, z and yaw. Without root track the
-  /// body stands at the track's x, z, yaw and height, and the track stays as it is.
+  /// Steps and turns are integrated from `track` (null: from the origin), which is updated to the last frame:
+  /// positions decoded in pieces over one track are, bit for bit, those decoded at once. If the track is not
+  /// started, the first frame is placed at its x, z and yaw. Without root track the body stays at the track's
+  /// x, z, yaw and height, and the track is unchanged.
   std::vector<Vec3> decode(std::span<const double> poses, RootTrack* track = nullptr) const {
     check_rows(poses.size(), dof(), "pose values", "dimensions");
     RootTrack own;
@@ -158,8 +158,8 @@ class PositionLayout {
     return out;
   }
 
-  /// The positions of poses [frames, dof] that stand where `places` [frames] says; the poses' own track does
-  /// not count. restore(encode(p), places(p)) is p but for rounding.
+  /// World positions [frames, joints] of poses [frames, dof] placed at `places` [frames], ignoring the poses'
+  /// own track. restore(encode(p), places(p)) is p up to rounding.
   std::vector<Vec3> restore(std::span<const double> poses, std::span<const RootTrack> places) const {
     require(poses.size() == places.size() * dof(), "found ", poses.size(), " pose values and ", places.size(),
             " places, expected ", dof(), " values for each place");

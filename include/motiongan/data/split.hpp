@@ -1,4 +1,4 @@
-// Dividing clips into training and test, the same way on every machine.
+// Splitting clips into training and test parts, identically on every machine.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -21,10 +21,11 @@ inline std::uint64_t splitmix64(std::uint64_t& state) {
   return z ^ (z >> 31);
 }
 
-/// For each of `count` clips whether it is for training: a seeded Fisher-Yates shuffle, of which the first
-/// `train_share` are (rounded, and at least one clip on either side if there are two).
+/// Whether each of `count` clips is for training: a seeded Fisher-Yates shuffle whose first `train_share` (a
+/// fraction; rounded, and leaving at least one clip in each part if there are two) are. Throws Error unless 0
+/// < train_share <= 1.
 inline std::vector<bool> split_clips(std::size_t count, double train_share, std::uint64_t seed) {
-  require(train_share > 0 && train_share <= 1, "the training share is ", train_share,
+  require(train_share > 0 && train_share <= 1, "train_share is ", train_share,
           ", expected more than 0 and at most 1");
   std::vector<std::size_t> order(count);
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -1,4 +1,4 @@
-// The words of the captions and their numbers.
+// The words of captions and their indices.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -32,16 +32,15 @@ inline std::vector<std::string> split_words(std::string_view caption) {
   return words;
 }
 
-/// Words in a fixed order; index 0 is `<unk>`, which stands for every word that is not in it (SPEC section
-/// 1).
+/// Words in a fixed order; index 0 is `<unk>`, which stands for every unknown word.
 class Vocabulary {
  public:
   static constexpr const char* unknown = "<unk>";
 
   Vocabulary() : Vocabulary(std::vector<std::string>{unknown}) {}
 
-  /// From a word list as words() gives it. Error if it does not start with `<unk>` or has a word twice or one
-  /// that no caption can contain.
+  /// From a word list as returned by words(). Throws Error if it does not start with `<unk>`, or has a word
+  /// twice or one that no caption can contain.
   explicit Vocabulary(std::vector<std::string> words) : words_(std::move(words)) {
     require(!words_.empty() && words_.front() == unknown, "the first word of a vocabulary is '",
             words_.empty() ? std::string() : words_.front(), "', expected '", unknown, "'");
@@ -49,11 +48,11 @@ class Vocabulary {
       require(i == 0 || split_words(words_[i]) == std::vector<std::string>{words_[i]}, "word ", i,
               " of a vocabulary is '", words_[i], "', expected lower-case letters and digits");
       require(index_.emplace(words_[i], static_cast<int>(i)).second, "word ", i, " of a vocabulary, '",
-              words_[i], "', is in it twice");
+              words_[i], "', appears twice");
     }
   }
 
-  /// All words of the captions, sorted by their bytes.
+  /// All words of the captions, sorted bytewise.
   static Vocabulary from_captions(std::span<const std::string> captions) {
     std::set<std::string> sorted;
     for (const std::string& caption : captions)
@@ -66,13 +65,13 @@ class Vocabulary {
   const std::vector<std::string>& words() const { return words_; }
   std::size_t size() const { return words_.size(); }
 
-  /// Number of a word, 0 if it is not known.
+  /// Index of a word, 0 if it is unknown.
   int find(const std::string& word) const {
     const auto at = index_.find(word);
     return at == index_.end() ? 0 : at->second;
   }
 
-  /// The caption's words as numbers; Error if it has no word.
+  /// The caption as word indices. Throws Error if it has no word.
   std::vector<int> encode(std::string_view caption) const {
     std::vector<int> out;
     for (const std::string& word : split_words(caption)) out.push_back(find(word));

@@ -23,16 +23,15 @@ struct DvganVariant {
 
   /// "cnn-cnn-dense-shift-cut": generator, critic, the CNN critic's validation, then what is on.
   std::string name() const {
-    std::string out = generator == GeneratorKind::cnn ? "cnn" : "rnn";
-    out += critic == CriticKind::cnn ? "-cnn-" + std::string(validation_name()) : "-rnn";
+    std::string out = concat(name_of(generator), "-", name_of(critic));
+    if (critic == CriticKind::cnn) out += concat("-", validation_name());
     if (shift) out += "-shift";
     if (cut) out += "-cut";
     return out;
   }
   /// "dense", "mod2" or "final"; empty for the RNN critic.
   std::string_view validation_name() const {
-    if (critic == CriticKind::rnn) return "";
-    return validation == Validation::dense ? "dense" : validation == Validation::mod2 ? "mod2" : "final";
+    return critic == CriticKind::rnn ? "" : name_of(validation);
   }
 
   DvganOptions model(DvganOptions options) const {
@@ -42,7 +41,7 @@ struct DvganVariant {
   }
   DvganTrainOptions training(DvganTrainOptions options) const {
     options.critic.critic = critic;
-    options.critic.validation = validation;
+    if (critic == CriticKind::cnn) options.critic.validation = validation;
     options.input_shift = shift;
     return options;
   }
@@ -50,9 +49,8 @@ struct DvganVariant {
   /// The same row of one of the paper's tables; none where it does not stand there.
   const paper::GeneratorRow* find(std::span<const paper::GeneratorRow> table) const {
     for (const paper::GeneratorRow& row : table)
-      if (row.generator == (generator == GeneratorKind::cnn ? "cnn" : "rnn") &&
-          row.critic == (critic == CriticKind::cnn ? "cnn" : "rnn") && row.validation == validation_name() &&
-          row.shift == shift && row.cut == cut)
+      if (row.generator == name_of(generator) && row.critic == name_of(critic) &&
+          row.validation == validation_name() && row.shift == shift && row.cut == cut)
         return &row;
     return nullptr;
   }
@@ -60,11 +58,10 @@ struct DvganVariant {
 
 /// The row of the paper's table.
 inline DvganVariant variant_of(const paper::GeneratorRow& row) {
-  return {.generator = row.generator == "rnn" ? GeneratorKind::rnn : GeneratorKind::cnn,
-          .critic = row.critic == "rnn" ? CriticKind::rnn : CriticKind::cnn,
-          .validation = row.validation == "final"  ? Validation::final
-                        : row.validation == "mod2" ? Validation::mod2
-                                                   : Validation::dense,
+  return {.generator = enum_from<GeneratorKind>(row.generator, "generator"),
+          .critic = enum_from<CriticKind>(row.critic, "critic"),
+          .validation = row.validation.empty() ? Validation::dense
+                                               : enum_from<Validation>(row.validation, "validation"),
           .shift = row.shift,
           .cut = row.cut};
 }

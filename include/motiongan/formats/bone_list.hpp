@@ -1,5 +1,4 @@
-// Which joint hangs on which: the list that a file of positions needs beside it, and what the positions say
-// about the bones.
+// Bone lists, which give position files their joint hierarchy, and bone offsets estimated from positions.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -20,10 +19,10 @@
 
 namespace motiongan::motion {
 
-/// Reads lines of `joint <TAB> parent`, in the order of the joints; the root stands first and has the parent
-/// `-`. Blank lines and lines that start with # are skipped. Names and parents only: all offsets are zero,
-/// see with_offsets_of. Errors are `name:line: ...`: no tab, a name twice, a parent that has not been named
-/// before, a second root.
+/// Reads lines of `joint <TAB> parent` in joint order; the root comes first and has the parent `-`. Blank
+/// lines and lines that start with # are skipped. There are only names and parents: all offsets are zero, see
+/// with_offsets_of. Throws Error as `name:line: ...` for a missing tab, a duplicate name, a parent not
+/// defined above, or a second root.
 inline Skeleton parse_bone_list(std::string_view text, std::string_view name) {
   Skeleton out;
   for_each_tab_line(text, name, "joint <TAB> parent (- for the root)", [&](const TabLine& line) {
@@ -33,7 +32,7 @@ inline Skeleton parse_bone_list(std::string_view text, std::string_view name) {
     require(!parent.empty() && parent.find('\t') == parent.npos, name, ":", line.number, ": joint '", joint,
             "' has the parent '", parent, "', expected one joint's name, or - for the root");
     require(out.find(joint) < 0, name, ":", line.number, ": joint '", joint,
-            "' was named before; names must differ");
+            "' is listed twice; joint names must be unique");
     Joint entry;
     entry.name = joint;
     if (parent == "-") {
@@ -43,7 +42,7 @@ inline Skeleton parse_bone_list(std::string_view text, std::string_view name) {
       entry.parent = out.find(parent);
       require(
           entry.parent >= 0, name, ":", line.number, ": joint '", joint, "' has the parent '", parent,
-          "', which no line above names; parents stand before their children, and the root's parent is -");
+          "', which no line above defines; parents come before their children, and the root's parent is -");
     }
     out.joints.push_back(std::move(entry));
   });
@@ -51,13 +50,13 @@ inline Skeleton parse_bone_list(std::string_view text, std::string_view name) {
   return out;
 }
 
-/// See parse_bone_list. Error too where the file cannot be read.
+/// As parse_bone_list, from a file. Throws Error also if the file cannot be read.
 inline Skeleton read_bone_list(const std::filesystem::path& path) {
   return parse_bone_list(read_text(path, "bone list"), path.string());
 }
 
-/// Writes the joints and their parents as read_bone_list reads them; offsets and channels have no place
-/// there. Error for a name that it would not read back.
+/// Writes joints and parents as read_bone_list reads them; offsets and channels are not stored. Throws Error
+/// for a name that could not be read back.
 inline void write_bone_list(const std::filesystem::path& path, const Skeleton& skeleton) {
   std::string text = "# joint\tparent\n";
   for (std::size_t j = 0; j < skeleton.size(); ++j) {
@@ -67,19 +66,19 @@ inline void write_bone_list(const std::filesystem::path& path, const Skeleton& s
                        name.back() != ' ' && name.find_first_of("\t\r\n\v\f") == name.npos;
     require(
         sound, "a joint called '", name, "' cannot be written to ", path.string(),
-        ": a name needs a character other than -, no tab or line end, no blank at its ends and no # at its "
-        "start");
+        ": a name must not be empty or -, contain a tab or line break, begin or end with a space, or begin "
+        "with #");
     text +=
         name + '\t' + (parent < 0 ? "-" : skeleton.joints.at(static_cast<std::size_t>(parent)).name) + '\n';
   }
-  parse_bone_list(text, path.string());  // an order or names that would not be read back are an error now
+  parse_bone_list(text, path.string());  // throws if order or names could not be read back
   write_text_atomically(path, text);
 }
 
-/// The skeleton with offsets measured in `positions` [frames, joints], y up, in the file's unit. A bone's
-/// offset has the direction that it has in the first frame (so the rest pose is that frame's) and its mean
-/// length over all frames. A bone shorter than a millionth of the mean bone is none: its offset is zero. The
-/// root's offset is zero. Error if there is no frame or the sizes do not fit.
+/// The skeleton with offsets estimated from `positions` [frames, joints], y up, in the file's unit. A bone's
+/// offset has its direction in the first frame (so the rest pose is that frame's) and its mean length over
+/// all frames. A bone shorter than a millionth of the mean bone gets a zero offset, as does the root. Throws
+/// Error if there is no frame or the sizes do not match.
 inline Skeleton with_offsets_of(Skeleton skeleton, std::span<const Vec3> positions) {
   const std::size_t joints = skeleton.size();
   require(joints > 0 && !positions.empty() && positions.size() % joints == 0, "found ", positions.size(),
@@ -96,7 +95,7 @@ inline Skeleton with_offsets_of(Skeleton skeleton, std::span<const Vec3> positio
           subtract(positions[f * joints + j], positions[f * joints + static_cast<std::size_t>(joint.parent)]);
       const double size = length(bone);
       lengths[j] += size / static_cast<double>(frames);
-      // The first frame that shows a direction: nearly always frame 0.
+      // The first frame in which the bone has a direction: nearly always frame 0.
       if (size > 0 && length(joint.offset) <= 0) joint.offset = scale(bone, 1 / size);
     }
     mean += lengths[j] / static_cast<double>(joints);

@@ -1,4 +1,4 @@
-// BVH files in and out.
+// Reading and writing BVH files.
 #pragma once
 #include "motiongan/formats/bvh_reader.hpp"
 #include "motiongan/formats/bvh_writer.hpp"

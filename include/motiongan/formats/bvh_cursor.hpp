@@ -1,4 +1,4 @@
-// A text and a place in it: the words, names and numbers of a BVH file, and messages that say where.
+// A cursor over BVH text: words, names and numbers, and errors with line and column.
 #pragma once
 #include <algorithm>
 #include <cctype>
@@ -24,14 +24,14 @@ inline bool same_word(std::string_view a, std::string_view b) {
   });
 }
 
-/// Walks over the text and knows at which line and column it is.
+/// Reads through the text; errors give line and column.
 class Cursor {
  public:
   Cursor(std::string_view text, std::string file) : text_(text), file_(std::move(file)) {
     if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);  // a UTF-8 byte order mark
   }
 
-  /// Throws `file:line:column: parts` for the place `at`.
+  /// Throws `file:line:column: parts` for the position `at`.
   template <class... Parts>
   [[noreturn]] void fail_at(std::size_t at, const Parts&... parts) const {
     const std::string_view before = text_.substr(0, at);
@@ -40,7 +40,7 @@ class Cursor {
     throw Error(file_, ":", line, ":", at - start + 1, ": ", parts...);
   }
 
-  /// How a piece of the file is shown in a message: quoted, short, without control characters.
+  /// A piece of the file as shown in messages: quoted, shortened, without control characters.
   static std::string quoted(std::string_view piece) {
     if (piece.empty()) return "the end of the file";
     std::string out = "'";
@@ -62,7 +62,7 @@ class Cursor {
   std::size_t place() const { return at_; }
   std::size_t left() const { return text_.size() - at_; }
 
-  /// The next word, without passing it; braces are words of their own. Empty at the end.
+  /// The next word, without consuming it; each brace is a word of its own. Empty at the end.
   std::string_view peek() {
     skip_space();
     return peek_here();
@@ -79,7 +79,7 @@ class Cursor {
     at_ += found.size();
   }
 
-  /// `Frames:` and the like, with or without space before the colon.
+  /// `Frames:` and similar labels, with or without space before the colon.
   void expect_label(std::string_view label) {
     skip_space();
     const std::size_t start = at_;
@@ -95,7 +95,7 @@ class Cursor {
     at_ = p;
   }
 
-  /// A joint's name: the rest of the line, up to an opening brace. Spaces inside belong to it.
+  /// A joint's name: the rest of the line, up to an opening brace. It may contain spaces.
   std::string_view rest_of_name() {
     skip_blanks();
     std::size_t stop = std::min(text_.find('\n', at_), text_.size());
@@ -130,7 +130,7 @@ class Cursor {
     }
     const std::string_view word = peek_here();
     if (error == std::errc::result_out_of_range && whole) {
-      // Too small for a double is zero; too large has no value.
+      // Underflow reads as zero; overflow is an error.
       const bool tiny = word.find("e-") != word.npos || word.find("E-") != word.npos ||
                         word.find_first_not_of("+-0.") > word.find('.');
       if (tiny) {

@@ -1,4 +1,4 @@
-// Reading BVH: any skeleton, any channels, and for everything that is wrong a message with its place.
+// BVH reader for any skeleton and any channels; every error gives its place in the file.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -18,9 +18,9 @@ namespace motiongan::motion {
 
 namespace bvh_detail {
 
-inline constexpr std::size_t max_depth = 1000;  // a deeper nest of joints is a broken file, not a skeleton
+inline constexpr std::size_t max_depth = 1000;  // deeper nesting means a broken file
 
-/// `Xposition` and the like in any case, or nothing.
+/// Parses `Xposition` etc., ignoring case; returns false for other words.
 inline bool channel_from_name(std::string_view word, Channel& out) {
   constexpr std::string_view names[] = {"Xposition", "Yposition", "Zposition",
                                         "Xrotation", "Yrotation", "Zrotation"};
@@ -71,14 +71,14 @@ inline std::vector<Channel> read_channels(Cursor& in, const std::string& joint) 
   return out;
 }
 
-/// One open joint while the hierarchy is read.
+/// A joint whose braces are open.
 struct Open {
   int joint = 0;
   bool has_offset = false, has_channels = false, has_child = false;
 };
 
-/// HIERARCHY up to the closing brace of the root. Joints on the way are kept on a stack of our own, so that
-/// no nesting can exhaust the program's.
+/// Reads HIERARCHY up to the root's closing brace. Open joints are kept on an explicit stack, so deep nesting
+/// cannot overflow the call stack.
 inline Skeleton read_hierarchy(Cursor& in) {
   in.expect("HIERARCHY", " (is this a BVH file?)");
   in.expect("ROOT", "");
@@ -93,7 +93,7 @@ inline Skeleton read_hierarchy(Cursor& in) {
     joint.name = std::string(in.rest_of_name());
     joint.parent = parent;
     if (joint.name.empty()) in.fail_at(place, "found no name, expected a joint's name after ROOT or JOINT");
-    // Joints are found by name, so a name must mean one joint.
+    // Joints are looked up by name, so names must be unique.
     if (!names.insert(joint.name).second)
       in.fail_at(place, "found a second joint called '", joint.name,
                  "', expected every joint to have its own name");
@@ -146,13 +146,14 @@ inline Skeleton read_hierarchy(Cursor& in) {
   }
   if (same_word(in.peek(), "ROOT"))
     in.fail_at(in.place(),
-               "found a second ROOT, expected MOTION: split files of several skeletons, one a file");
+               "found a second ROOT, expected MOTION: split the file into one file per skeleton");
   return skeleton;
 }
 
 }  // namespace bvh_detail
 
 /// Reads the HIERARCHY part of a BVH text, which may end after it. `name` is what messages call the text.
+/// Throws Error as `name:line:column: ...`.
 inline Skeleton parse_hierarchy(std::string_view text, std::string name) {
   bvh_detail::Cursor in(text, std::move(name));
   Skeleton skeleton = bvh_detail::read_hierarchy(in);
@@ -162,8 +163,8 @@ inline Skeleton parse_hierarchy(std::string_view text, std::string name) {
   return skeleton;
 }
 
-/// Reads a whole BVH text; `name` becomes the clip's id and stands in front of messages. Frames are one a
-/// line. Errors are `name:line:column: what was found, what was expected`; the column counts bytes.
+/// Reads a whole BVH text, one frame per line; `name` becomes the clip's id and prefixes messages. Throws
+/// Error as `name:line:column: what was found, what was expected`; the column counts bytes.
 inline Clip parse_bvh(std::string_view text, std::string name) {
   using bvh_detail::Cursor;
   Cursor in(text, name);
@@ -188,7 +189,7 @@ inline Clip parse_bvh(std::string_view text, std::string name) {
     in.fail_at(in.place(), "found ", Cursor::quoted(in.peek()),
                ", expected the end of the line after the frame time");
 
-  // A number takes two bytes at least: a header that promises more than the file can hold reserves no memory.
+  // A number takes at least two bytes: do not reserve memory for more frames than the file can hold.
   if (width > 0)
     clip.channels.reserve(promised <= in.left() / (2 * width) + 1 ? promised * width : in.left() / 2 + width);
   for (in.skip_space(); !in.at_end(); in.skip_space()) {
@@ -214,7 +215,8 @@ inline Clip parse_bvh(std::string_view text, std::string name) {
   return clip;
 }
 
-/// Reads a BVH file; the clip's id is the file's name without folder and extension.
+/// Reads a BVH file; the clip's id is the file name without folder and extension. Throws Error if the file
+/// cannot be read or parsed.
 inline Clip read_bvh(const std::filesystem::path& path) {
   const std::string text = read_text(path, "BVH file");
   Clip clip = parse_bvh(text, path.string());

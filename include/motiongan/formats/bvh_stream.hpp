@@ -1,4 +1,4 @@
-// Writing BVH while motion is being made.
+// Writing BVH while motion is being generated.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -16,14 +16,15 @@
 
 namespace motiongan::motion {
 
-/// A BVH file that grows by pieces, in memory that does not: byte for byte the file that write_bvh writes for
-/// the pieces joined. BVH says at its start how many frames follow, so their number must be known.
+/// A BVH file written in pieces with bounded memory: byte for byte the file that write_bvh writes for the
+/// pieces joined. BVH stores the number of frames in its header, so it must be known in advance.
 ///
-/// The file is written beside `path` (as `path.tmp`) and appears with finish(); without finish() nothing is
-/// left behind, and what stood at `path` before is untouched.
+/// The file is written next to `path` (as `path.tmp`) and renamed by finish(). Without finish() nothing is
+/// left behind, and an existing file at `path` is untouched.
 class BvhStreamWriter {
  public:
-  /// Error for a skeleton that BVH cannot hold, a rate that is not positive and a file that cannot be opened.
+  /// Throws Error for a skeleton that BVH cannot hold, a rate that is not positive, or a file that cannot be
+  /// opened.
   BvhStreamWriter(const std::filesystem::path& path, const Skeleton& skeleton, double rate,
                   std::size_t frames)
       : id_(path.stem().string()),
@@ -36,22 +37,22 @@ class BvhStreamWriter {
     file_.write(header_);
   }
 
-  /// Appends a piece of the motion. Error, and nothing is appended, for another number of joints, another
-  /// rate, more frames than were announced, or a number that is not finite.
+  /// Appends a piece of the motion. Throws Error, and appends nothing, for another number of joints, another
+  /// rate, more frames than announced, or a value that is not finite.
   void append(const Motion& piece) {
     require(!finished_, "BVH '", id_, "' is finished; nothing can be appended");
     require(std::abs(piece.rate / rate_ - 1) < 1e-6, "a piece of ", piece.rate,
             " frames per second was appended to BVH '", id_, "', expected ", rate_);
     require(piece.frames <= frames_ - written_, piece.frames, " frames were appended to BVH '", id_,
             "' after ", written_, ", expected at most the ", frames_, " announced");
-    ChannelEncoder encoder = encoder_;  // a piece that is refused leaves the angles where they were
+    ChannelEncoder encoder = encoder_;  // a rejected piece must not change the angles
     std::vector<double> channels;
     channels.reserve(piece.frames * width_);
     encoder.append(piece, channels);
     bvh_detail::round_channels(channels);
     bvh_detail::check_finite(channels, width_, written_, id_);
     std::string text;
-    const std::size_t block = 256 * std::max<std::size_t>(width_, 1);  // numbers turned to text at a time
+    const std::size_t block = 256 * std::max<std::size_t>(width_, 1);  // values formatted at a time
     for (std::size_t i = 0; i < channels.size(); i += block) {
       text.clear();
       bvh_detail::append_frames(text, std::span(channels).subspan(i, std::min(block, channels.size() - i)),
@@ -64,7 +65,7 @@ class BvhStreamWriter {
 
   std::size_t written() const { return written_; }  ///< frames appended so far
 
-  /// After this the file stands at its path. Error unless all announced frames were appended.
+  /// Completes the file at its path. Throws Error unless all announced frames were appended.
   void finish() {
     require(!finished_, "BVH '", id_, "' is finished already");
     require(written_ == frames_, "BVH '", id_, "' has ", written_, " frames, expected the ", frames_,

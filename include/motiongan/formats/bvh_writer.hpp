@@ -1,5 +1,5 @@
-// Writing BVH. Numbers are written in the fewest digits that read back as the same double, so a file that is
-// read and written again keeps every number; motions are rounded to six decimals first, as is usual.
+// BVH writer. Values are written in the fewest digits that read back as the same double, so reading and
+// rewriting a file keeps every number; motions are first rounded to six decimals, as is usual.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -23,7 +23,7 @@ namespace motiongan::motion {
 namespace bvh_detail {
 
 inline void append_number(std::string& out, double value) {
-  // Without exponents, which not every tool reads. 400 characters hold any double.
+  // Without exponents, which some tools cannot read. 400 characters hold any double.
   std::array<char, 400> digits;
   const auto result = std::to_chars(digits.data(), digits.data() + digits.size(), value == 0 ? 0.0 : value,
                                     std::chars_format::fixed);
@@ -40,26 +40,26 @@ inline void append_offset(std::string& out, const std::string& indent, const Vec
   out += '\n';
 }
 
-/// Error unless a reader would find this name again.
+/// Throws Error unless a reader would read this name back.
 inline void check_name(const std::string& name) {
   const bool sound = !name.empty() && !is_blank(name.front()) && !is_blank(name.back()) &&
                      name.front() != '{' && name.back() != '{' && name.find('\n') == name.npos &&
                      name.find(" {") == name.npos && name.find("\t{") == name.npos;
   require(
       sound, "a joint called '", name,
-      "' cannot be written as BVH: a name needs a character, no line end, no space at its ends and no brace "
-      "at its start or end or after a space");
+      "' cannot be written as BVH: a name must not be empty, contain a line break, begin or end with a "
+      "space, or have a brace at its start, at its end or after a space");
 }
 
 }  // namespace bvh_detail
 
-/// The HIERARCHY part of a BVH file. Error for names and offsets that BVH cannot hold.
+/// The HIERARCHY part of a BVH file. Throws Error for names, offsets or joint orders that BVH cannot hold.
 inline std::string format_hierarchy(const Skeleton& skeleton) {
   constexpr std::array<std::string_view, 6> names{"Xposition", "Yposition", "Zposition",
                                                   "Xrotation", "Yrotation", "Zrotation"};
   require(skeleton.size() > 0, "a skeleton without joints cannot be written as BVH");
   std::string out = "HIERARCHY\n";
-  std::vector<int> open;  // the joints whose braces are open
+  std::vector<int> open;  // joints with open braces
   const auto indent = [&] { return std::string(open.size(), '\t'); };
   const auto close = [&] {
     const Joint& joint = skeleton.joints[static_cast<std::size_t>(open.back())];
@@ -74,7 +74,7 @@ inline std::string format_hierarchy(const Skeleton& skeleton) {
   for (std::size_t j = 0; j < skeleton.size(); ++j) {
     const Joint& joint = skeleton.joints[j];
     while (!open.empty() && open.back() != joint.parent) close();
-    // BVH lists a joint's whole branch before the next one; another order would renumber the channels.
+    // BVH is depth-first; another order would renumber the channels.
     require(!open.empty() || (j == 0 && joint.parent == -1), "joint '", joint.name, "' has parent ",
             joint.parent, ", which is not on the branch before it: BVH needs one root and depth-first order");
     bvh_detail::check_name(joint.name);
@@ -93,7 +93,7 @@ inline std::string format_hierarchy(const Skeleton& skeleton) {
 
 namespace bvh_detail {
 
-/// All of a BVH file but its frames. `id` is what messages call the clip.
+/// A BVH file up to its frames. `id` is what messages call the clip.
 inline std::string format_header(const Skeleton& skeleton, std::size_t frames, double frame_time,
                                  const std::string& id) {
   require(std::isfinite(frame_time) && frame_time >= 1e-6, "clip '", id, "' has a frame time of ", frame_time,
@@ -106,7 +106,7 @@ inline std::string format_header(const Skeleton& skeleton, std::size_t frames, d
   return out;
 }
 
-/// Error unless all channels [frames, width] are finite; the first of them belong to frame `first` of `id`.
+/// Throws Error unless all channels [frames, width] are finite; the first row is frame `first` of clip `id`.
 inline void check_finite(std::span<const double> channels, std::size_t width, std::size_t first,
                          const std::string& id) {
   for (std::size_t i = 0; i < channels.size(); ++i)
@@ -114,7 +114,7 @@ inline void check_finite(std::span<const double> channels, std::size_t width, st
             i % width + 1, " is ", channels[i], "; BVH holds finite numbers only");
 }
 
-/// Appends the lines of channels [frames, width].
+/// Appends channels [frames, width], one line per frame.
 inline void append_frames(std::string& out, std::span<const double> channels, std::size_t width) {
   for (std::size_t i = 0; i < channels.size(); ++i) {
     append_number(out, channels[i]);
@@ -122,7 +122,7 @@ inline void append_frames(std::string& out, std::span<const double> channels, st
   }
 }
 
-/// To six decimals, the way motions are written.
+/// Rounds to six decimals, as motions are written.
 inline void round_channels(std::vector<double>& channels) {
   for (double& v : channels)
     if (std::abs(v) < 1e9) v = std::round(v * 1e6) / 1e6;
@@ -130,7 +130,8 @@ inline void round_channels(std::vector<double>& channels) {
 
 }  // namespace bvh_detail
 
-/// The whole BVH text of a clip; every number reads back as the same double.
+/// The whole BVH text of a clip; every number reads back as the same double. Throws Error for a clip that BVH
+/// cannot hold.
 inline std::string format_bvh(const Clip& clip) {
   const std::size_t width = clip.skeleton.channel_count();
   require(clip.channels.size() == clip.frames * width, "clip '", clip.id, "' has ", clip.channels.size(),
@@ -142,6 +143,7 @@ inline std::string format_bvh(const Clip& clip) {
   return out;
 }
 
+/// Writes format_bvh(clip); `path` never holds a partial file.
 inline void write_bvh(const std::filesystem::path& path, const Clip& clip) {
   write_text_atomically(path, format_bvh(clip));
 }

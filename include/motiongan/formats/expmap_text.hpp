@@ -1,5 +1,5 @@
-// Motion as the motion-prediction papers keep it: text files of exponential maps, in the folders of Human3.6M
-// and of the CMU clips (SPEC section 6).
+// Text files of exponential maps as used in the motion-prediction literature, in the folder layouts of
+// Human3.6M and of the CMU clips.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -21,8 +21,8 @@
 
 namespace motiongan::motion {
 
-/// The numbers of one file: every three columns are the exponential map of a joint (the first three: the
-/// root's place or how it changes).
+/// The values of one file: every three columns are the exponential map of a joint (the first three: the
+/// position of the root, or its change).
 struct ExpmapText {
   std::size_t columns = 0, frames = 0;
   std::vector<double> values;  ///< [frames, columns], radians
@@ -31,7 +31,7 @@ struct ExpmapText {
 namespace expmap_detail {
 inline constexpr std::string_view separators = ", \t\r\v\f";
 
-/// The next number of a line, which is taken away from it; nothing at its end. Error for what is no number.
+/// Removes and returns the next number of a line; nothing at its end. Throws Error for anything else.
 inline std::optional<double> next_number(std::string_view& line, std::string_view name, std::size_t number) {
   line.remove_prefix(std::min(line.size(), line.find_first_not_of(separators)));
   if (line.empty()) return std::nullopt;
@@ -47,8 +47,8 @@ inline std::optional<double> next_number(std::string_view& line, std::string_vie
 }
 }  // namespace expmap_detail
 
-/// Reads lines of numbers with commas or blanks between them, a frame a line; blank lines are skipped. Every
-/// line has as many numbers as the first, and they are a multiple of three. Errors are `name:line: ...`.
+/// Reads numbers separated by commas or blanks, one frame per line; blank lines are skipped. Every line has
+/// as many numbers as the first, a multiple of three. Throws Error as `name:line: ...`.
 inline ExpmapText parse_expmap_text(std::string_view text, std::string_view name) {
   ExpmapText out;
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
@@ -62,22 +62,23 @@ inline ExpmapText parse_expmap_text(std::string_view text, std::string_view name
     if (found == 0) continue;
     if (out.frames++ == 0) {
       require(found % 3 == 0, name, ":", number, ": found ", found,
-              " numbers, expected three for every joint (99 for Human3.6M, 117 for CMU)");
+              " numbers, expected three per joint (99 for Human3.6M, 117 for CMU)");
       out.columns = found;
       first_line = number;
     }
     require(found == out.columns, name, ":", number, ": found ", found, " numbers, expected ", out.columns,
             " as in line ", first_line);
   }
-  require(out.frames > 0, name, ": found no numbers, expected a line of them for every frame");
+  require(out.frames > 0, name, ": found no numbers, expected one line of them per frame");
   return out;
 }
 
+/// As parse_expmap_text, from a file. Throws Error also if the file cannot be read.
 inline ExpmapText read_expmap_text(const std::filesystem::path& path) {
   return parse_expmap_text(read_text(path, "file of exponential maps"), path.string());
 }
 
-/// Which folders the files are in.
+/// The folder layout of a collection.
 enum class ExpmapLayout {
   h36m,  ///< S5/walking_1.txt and _2: subjects S1, S5, S6, S7, S8, S9, S11; S5 is for testing. 50 frames/s
   cmu    ///< train/walking/walking_1.txt ..., test/walking/walking_1.txt. 120 frames/s
@@ -90,27 +91,27 @@ inline double rate_of(ExpmapLayout layout) { return layout == ExpmapLayout::h36m
 
 /// One file of a collection.
 struct ExpmapClip {
-  std::string id;      ///< its path below the folder without extension, such as S5/walking_1
+  std::string id;      ///< path below the folder without extension, such as S5/walking_1
   std::string action;  ///< such as walking
   std::filesystem::path path;
   ExpmapText text;
 };
 
-/// The files to train on, and those to test some actions with.
+/// The training files, and the test files of the tested actions.
 struct ExpmapCollection {
   ExpmapLayout layout = ExpmapLayout::h36m;
   std::size_t columns = 0;
-  std::vector<std::string> actions;  ///< tested, in the order they were asked for, else by name
-  std::vector<std::string> classes;  ///< all actions that are trained on or could be tested, by name
+  std::vector<std::string> actions;  ///< tested, in the order given, else by name
+  std::vector<std::string> classes;  ///< all actions trained on or available for testing, by name
   std::vector<ExpmapClip> train;     ///< by action, then by id
   std::vector<ExpmapClip> test;      ///< of every tested action, in order: two for h36m (_1, _2), one for cmu
 };
 
 /// Which files of a folder are read.
 struct ExpmapSelection {
-  std::vector<std::string> actions{};        ///< to test; none: all that have test files
-  std::vector<std::string> train_actions{};  ///< to train on; none: all that have training files
-  std::optional<ExpmapLayout> layout{};      ///< none: found out by the folders
+  std::vector<std::string> actions{};        ///< to test; empty: all with test files
+  std::vector<std::string> train_actions{};  ///< to train on; empty: all with training files
+  std::optional<ExpmapLayout> layout{};      ///< not set: detected from the folders
 };
 
 namespace expmap_detail {
@@ -118,7 +119,7 @@ namespace fs = std::filesystem;
 
 inline constexpr std::array<const char*, 6> training_subjects{"S1", "S6", "S7", "S8", "S9", "S11"};
 
-/// Names in a folder, sorted: of folders, or of .txt files.
+/// Sorted names in a folder: of its folders, or of its .txt files.
 inline std::vector<std::string> names_in(const fs::path& folder, bool folders) {
   std::error_code problem;
   std::vector<std::string> out;
@@ -139,7 +140,7 @@ inline std::string joined(const std::vector<std::string>& names) {
   return out;
 }
 
-/// The actions that can be tested with: those whose test files are there.
+/// The actions whose test files exist.
 inline std::vector<std::string> testable_actions(const fs::path& folder, ExpmapLayout layout) {
   std::vector<std::string> out;
   if (layout == ExpmapLayout::cmu) {
@@ -156,7 +157,7 @@ inline std::vector<std::string> testable_actions(const fs::path& folder, ExpmapL
   return out;
 }
 
-/// The actions that can be trained on.
+/// The actions with training files.
 inline std::vector<std::string> trainable_actions(const fs::path& folder, ExpmapLayout layout) {
   std::set<std::string> out;
   if (layout == ExpmapLayout::cmu) {
@@ -172,7 +173,7 @@ inline std::vector<std::string> trainable_actions(const fs::path& folder, Expmap
   return {out.begin(), out.end()};
 }
 
-/// Below `folder`: the files of an action to train on.
+/// Training files of an action, relative to `folder`.
 inline std::vector<fs::path> training_files(const fs::path& folder, ExpmapLayout layout,
                                             const std::string& action) {
   std::vector<fs::path> out;
@@ -188,7 +189,7 @@ inline std::vector<fs::path> training_files(const fs::path& folder, ExpmapLayout
   return out;
 }
 
-/// The actions asked for, or all that are there. Error for one that is not there, or asked for twice.
+/// The given actions, or all available ones. Throws Error for one that is not available or is given twice.
 inline std::vector<std::string> chosen(const std::vector<std::string>& asked,
                                        const std::vector<std::string>& there, const char* kind,
                                        const fs::path& folder) {
@@ -196,14 +197,14 @@ inline std::vector<std::string> chosen(const std::vector<std::string>& asked,
   for (const std::string& action : asked) {
     require(std::find(there.begin(), there.end(), action) != there.end(), "no ", kind,
             " file of the action '", action, "' in ", folder.string(),
-            "; those that have one: ", joined(there));
-    require(seen.insert(action).second, "the action '", action, "' was asked for twice");
+            "; actions that have one: ", joined(there));
+    require(seen.insert(action).second, "the action '", action, "' is given twice");
   }
   return asked.empty() ? there : asked;
 }
 }  // namespace expmap_detail
 
-/// The layout of a folder, by the folders in it. Error if they tell neither, or both.
+/// Detects the layout of a folder from its subfolders. Throws Error if they match neither layout, or both.
 inline ExpmapLayout find_expmap_layout(const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
   require(fs::is_directory(folder), folder.string(), " is not a folder");
@@ -213,12 +214,12 @@ inline ExpmapLayout find_expmap_layout(const std::filesystem::path& folder) {
           " has neither the folder S5 (Human3.6M: S5/walking_1.txt) nor train and test (CMU: "
           "train/walking/walking_1.txt); give the folder that holds them");
   require(!(cmu && h36m), folder.string(),
-          " has the folders of Human3.6M (S5) and of CMU (train, test); say which layout is meant");
+          " has the folders of Human3.6M (S5) and of CMU (train, test); give the layout, h36m or cmu");
   return h36m ? ExpmapLayout::h36m : ExpmapLayout::cmu;
 }
 
-/// Reads what is asked for. An action may be tested that has nothing to train on. Error, naming what there
-/// is, for an action without files; and if the files differ in columns.
+/// Reads the selected files. An action may be tested without training files of its own. Throws Error, listing
+/// what is available, for an action without files, and if files differ in their number of columns.
 inline ExpmapCollection read_expmap_collection(const std::filesystem::path& folder,
                                                const ExpmapSelection& selection = {}) {
   namespace fs = std::filesystem;
@@ -228,14 +229,15 @@ inline ExpmapCollection read_expmap_collection(const std::filesystem::path& fold
   const bool cmu = out.layout == ExpmapLayout::cmu;
   for (const char* needed : {cmu ? "test" : "S5", cmu ? "train" : "S5"})
     require(fs::is_directory(folder / needed), folder.string(), " has no folder ", needed,
-            ", which the layout ", name_of(out.layout), " has");
+            ", which the layout ", name_of(out.layout), " requires");
   const std::vector<std::string> testable = expmap_detail::testable_actions(folder, out.layout),
                                  trainable = expmap_detail::trainable_actions(folder, out.layout);
   require(!testable.empty(), folder.string(), " has no test files, expected ",
-          cmu ? "test/walking/walking_1.txt or alike" : "S5/walking_1.txt and S5/walking_2.txt or alike");
+          cmu ? "test/walking/walking_1.txt or similar" : "S5/walking_1.txt and S5/walking_2.txt or similar");
   require(
       !trainable.empty(), folder.string(), " has no files to train on, expected ",
-      cmu ? "train/walking/walking_1.txt or alike" : "S1/walking_1.txt or alike, of S1, S6, S7, S8, S9, S11");
+      cmu ? "train/walking/walking_1.txt or similar"
+          : "S1/walking_1.txt or similar, of S1, S6, S7, S8, S9, S11");
   out.actions = expmap_detail::chosen(selection.actions, testable, "test", folder);
   std::vector<std::string> trained =
       expmap_detail::chosen(selection.train_actions, trainable, "training", folder);
@@ -249,7 +251,8 @@ inline ExpmapCollection read_expmap_collection(const std::filesystem::path& fold
     clip.text = read_expmap_text(clip.path);
     if (out.columns == 0) out.columns = clip.text.columns, first = clip.path;
     require(clip.text.columns == out.columns, clip.path.string(), " has ", clip.text.columns,
-            " numbers a line, ", first.string(), " has ", out.columns, "; expected as many in all files");
+            " numbers per line, ", first.string(), " has ", out.columns,
+            "; expected the same number in all files");
     return clip;
   };
   for (const std::string& action : trained)

@@ -1,4 +1,4 @@
-// Joint positions as comma-separated text, one frame a line.
+// Joint positions as CSV, one frame per line.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -19,7 +19,7 @@ namespace motiongan::motion {
 
 namespace position_csv_detail {
 
-/// The next line of `text`, without its end; takes it off.
+/// Removes and returns the next line of `text`, without its line break.
 inline std::string_view take_line(std::string_view& text) {
   std::string_view line = text.substr(0, text.find('\n'));
   text.remove_prefix(std::min(text.size(), line.size() + 1));
@@ -27,7 +27,7 @@ inline std::string_view take_line(std::string_view& text) {
   return line;
 }
 
-/// The fields between the commas of `line`, without blanks at their ends.
+/// Splits `line` at its commas; fields are trimmed.
 inline void split_fields(std::string_view line, std::vector<std::string_view>& out) {
   out.clear();
   for (std::size_t at = 0;;) {
@@ -41,13 +41,13 @@ inline void split_fields(std::string_view line, std::vector<std::string_view>& o
   }
 }
 
-/// What the columns of a position file hold: where each goes in a frame of [joints, 3].
+/// The columns of a position file, and where each goes in a frame of [joints, 3].
 struct CsvColumns {
   bool time = false;               ///< the first column is the time in seconds
   std::vector<std::size_t> place;  ///< [columns without time], 3 * joint + axis
 };
 
-/// Error `name:1: ...` where a column is no joint's, comes twice, or one is missing.
+/// Throws Error as `name:1: ...` for an unknown, duplicate or missing column.
 inline CsvColumns parse_csv_header(const std::vector<std::string_view>& fields, const Skeleton& skeleton,
                                    std::string_view name) {
   CsvColumns out;
@@ -55,17 +55,17 @@ inline CsvColumns parse_csv_header(const std::vector<std::string_view>& fields, 
   std::vector<char> seen(3 * skeleton.size(), 0);
   for (std::size_t i = out.time ? 1 : 0; i < fields.size(); ++i) {
     const std::string_view field = fields[i];
-    // A joint's name may hold a dot itself, so the axis stands after the last one.
+    // A joint's name may itself contain a dot, so the axis follows the last one.
     const std::size_t dot = field.rfind('.');
     const std::string_view axis = dot == field.npos ? std::string_view() : field.substr(dot + 1);
     require(axis == "x" || axis == "y" || axis == "z", name, ":1: column ", i + 1, " is called '", field,
             "', expected a joint's name and .x, .y or .z as in Hips.x (the first column may be time)");
     const int joint = skeleton.find(field.substr(0, dot));
-    require(joint >= 0, name, ":1: column ", i + 1, " is of joint '", field.substr(0, dot),
-            "', which the bone list does not have");
+    require(joint >= 0, name, ":1: column ", i + 1, " is for joint '", field.substr(0, dot),
+            "', which is not in the bone list");
     const std::size_t place =
         3 * static_cast<std::size_t>(joint) + static_cast<std::size_t>(axis.front() - 'x');
-    require(!seen[place], name, ":1: the column '", field, "' comes twice");
+    require(!seen[place], name, ":1: the column '", field, "' appears twice");
     seen[place] = 1;
     out.place.push_back(place);
   }
@@ -76,19 +76,19 @@ inline CsvColumns parse_csv_header(const std::vector<std::string_view>& fields, 
   return out;
 }
 
-/// Frames per second of times in seconds; Error `name: ...` where they are not even. `lines` [frames] are the
-/// lines that they stand in.
+/// Frames per second from times in seconds. Throws Error as `name: ...` if they are not evenly spaced.
+/// `lines` [frames] are their line numbers.
 inline double rate_from_times(const std::vector<double>& times, const std::vector<std::size_t>& lines,
                               std::string_view name) {
   const double step = (times.back() - times.front()) / static_cast<double>(times.size() - 1);
   require(step > 0, name, ": the times go from ", times.front(), " to ", times.back(),
-          " s; expected them to grow");
-  // Times are often rounded to a millisecond, so a tenth of a frame is let pass; a lost frame is more.
+          " s, expected increasing times");
+  // Times are often rounded to a millisecond, so a tenth of a frame is tolerated; a lost frame is not.
   for (std::size_t f = 0; f < times.size(); ++f)
     require(std::abs(times[f] - (times.front() + step * static_cast<double>(f))) <= 0.1 * step, name, ":",
             lines[f], ": the time is ", times[f], " s, expected ",
             times.front() + step * static_cast<double>(f),
-            " s from even frames; resample the file to a constant rate");
+            " s at a constant rate; resample the file");
   return rate_from_frame_time(step);
 }
 
@@ -96,9 +96,10 @@ inline double rate_from_times(const std::vector<double>& times, const std::vecto
 
 /// Reads text whose first line names the columns (`Hips.x,Hips.y,Hips.z,...`: x, y and z of every joint of
 /// `skeleton`, joints in any order) and whose other lines are frames. With a first column `time` (seconds)
-/// the rate is taken from it, otherwise it is `rate`, in frames per second. Positions are in the world, y up,
-/// in the file's unit. Names and parents come from `skeleton`, offsets from the positions (with_offsets_of).
-/// Errors are `name:line: ...`: columns, numbers of fields, numbers that are not finite, uneven times.
+/// the rate is taken from it, otherwise it is `rate`, in frames per second. Positions are world coordinates,
+/// y up, in the file's unit. Names and parents come from `skeleton`, offsets from the positions
+/// (with_offsets_of). Throws Error as `name:line: ...` for wrong columns, wrong numbers of fields, values
+/// that are not finite, and uneven times.
 inline PositionClip parse_position_csv(std::string_view text, const Skeleton& skeleton, double rate,
                                        std::string_view name) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
@@ -137,16 +138,15 @@ inline PositionClip parse_position_csv(std::string_view text, const Skeleton& sk
     lines.push_back(line);
   }
   out.frames = lines.size();
-  require(out.frames > 0, name, ": found no frames below the first line, expected one a line");
+  require(out.frames > 0, name, ": found no frames below the header line, expected one per line");
   out.rate = times.size() > 1 ? position_csv_detail::rate_from_times(times, lines, name) : rate;
-  require(std::isfinite(out.rate) && out.rate > 0, name, ": the rate is given as ", rate,
-          " frames per second and the file has no times; give a rate above 0, or a first column 'time' in "
-          "seconds");
+  require(std::isfinite(out.rate) && out.rate > 0, name, ": the rate is ", rate,
+          " frames per second, expected more than 0; give a rate, or add a first column 'time' in seconds");
   out.skeleton = with_offsets_of(skeleton, out.positions);
   return out;
 }
 
-/// Error unless the clip's numbers can be written: sizes fit, everything finite, rate above 0.
+/// Throws Error unless the clip can be written: sizes match, all values are finite, the rate is above 0.
 inline void check_writable(const PositionClip& clip) {
   const std::size_t joints = clip.skeleton.size();
   require(joints > 0 && clip.positions.size() == clip.frames * joints, "clip '", clip.id, "' has ",
@@ -159,15 +159,15 @@ inline void check_writable(const PositionClip& clip) {
               clip.skeleton.joints[i % joints].name, "': found ", v, ", expected a finite number");
 }
 
-/// The clip as text that parse_position_csv reads: a column `time`, then x, y, z of every joint. Numbers are
-/// rounded to single precision and written in the fewest digits that keep it. Error for names that a column
-/// cannot hold (a comma, a line end).
+/// The clip as text that parse_position_csv reads: a column `time`, then x, y, z of every joint. Positions
+/// are rounded to single precision and written in the fewest digits that preserve it. Throws Error for names
+/// that a column cannot hold (a comma, a line break).
 inline std::string format_position_csv(const PositionClip& clip) {
   check_writable(clip);
   std::string out = "time";
   for (const Joint& j : clip.skeleton.joints) {
     require(j.name.find_first_of(",\r\n") == j.name.npos, "a joint called '", j.name,
-            "' cannot be written as CSV: a name may not hold a comma or a line end");
+            "' cannot be written as CSV: a name must not contain a comma or a line break");
     for (const char axis : {'x', 'y', 'z'}) out.append(",").append(j.name).append(".") += axis;
   }
   out += '\n';

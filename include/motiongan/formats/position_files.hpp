@@ -1,4 +1,4 @@
-// Motions as files of joint positions: what other tools and other data sets hold.
+// Motions as files of joint positions (CSV and NPY), for exchange with other tools and data sets.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -13,13 +13,13 @@
 
 namespace motiongan::motion {
 
-/// What the bone list of a folder of position files is called.
+/// File name of the bone list in a folder of position files.
 inline constexpr const char* bone_list_name = "bones.tsv";
 
-/// The clip in a .csv (parse_position_csv) or .npy (parse_position_npy) file. `bones` is its bone list
-/// (read_bone_list); if it is empty, `bones.tsv` beside the clip is taken. `rate`, in frames per second, is
-/// the file's; a .csv with a column `time` has its own. Its id is the file's name. Error for other files, and
-/// where there is no bone list.
+/// Reads a .csv (parse_position_csv) or .npy (parse_position_npy) file. `bones` is its bone list
+/// (read_bone_list); if empty, `bones.tsv` next to the file is used. `rate`, in frames per second, is the
+/// file's; a .csv with a column `time` has its own. The clip's id is the file name without extension. Throws
+/// Error for other files, and if there is no bone list.
 inline PositionClip read_position_file(const std::filesystem::path& file, const std::filesystem::path& bones,
                                        double rate) {
   const std::string extension = file.extension().string();
@@ -29,9 +29,9 @@ inline PositionClip read_position_file(const std::filesystem::path& file, const 
   if (list.empty()) {
     std::error_code problem;
     list = file.parent_path() / bone_list_name;
-    require(std::filesystem::exists(list, problem), file.string(), " holds positions of joints, but not how ",
-            "they hang together, and there is no ", list.string(),
-            ": put one there, or name a bone list (lines of joint <TAB> parent, - for the root)");
+    require(std::filesystem::exists(list, problem), file.string(), " holds joint positions but no ",
+            "hierarchy, and ", list.string(),
+            " does not exist: create it, or give a bone list (lines of joint <TAB> parent, - for the root)");
   }
   const Skeleton skeleton = read_bone_list(list);
   const std::string text = read_text(file, "file of joint positions");
@@ -41,12 +41,12 @@ inline PositionClip read_position_file(const std::filesystem::path& file, const 
   return clip;
 }
 
-/// Writes format_position_csv; `path` never holds half a file.
+/// Writes format_position_csv(clip); `path` never holds a partial file.
 inline void write_position_csv(const std::filesystem::path& path, const PositionClip& clip) {
   write_text_atomically(path, format_position_csv(clip));
 }
 
-/// Writes format_position_npy; `path` never holds half a file.
+/// Writes format_position_npy(clip); `path` never holds a partial file.
 inline void write_position_npy(const std::filesystem::path& path, const PositionClip& clip) {
   write_text_atomically(path, format_position_npy(clip));
 }

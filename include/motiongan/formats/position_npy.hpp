@@ -1,4 +1,4 @@
-// Joint positions as NumPy's .npy arrays.
+// Joint positions as NumPy .npy arrays.
 #pragma once
 #include <bit>
 #include <charconv>
@@ -19,15 +19,15 @@ namespace motiongan::motion {
 
 namespace npy_detail {
 
-/// What the header of an .npy file says.
+/// The header of an .npy file.
 struct NpyHeader {
   std::string descr;               ///< such as "<f4"
-  bool fortran_order = false;      ///< the first index runs fastest
-  std::vector<std::size_t> shape;  ///< empty for a single number
-  std::size_t data = 0;            ///< where the numbers start in the file
+  bool fortran_order = false;      ///< the first index varies fastest
+  std::vector<std::size_t> shape;  ///< empty for a scalar
+  std::size_t data = 0;            ///< offset of the values in the file
 };
 
-/// The text after `'key':` in the header's dictionary. Error `name: ...` where there is none.
+/// The text after `'key':` in the header's dictionary. Throws Error as `name: ...` if there is none.
 inline std::string_view npy_entry(std::string_view dictionary, std::string_view key, std::string_view name) {
   for (const char quote : {'\'', '"'}) {
     const std::string quoted = quote + std::string(key) + quote;
@@ -42,11 +42,11 @@ inline std::string_view npy_entry(std::string_view dictionary, std::string_view 
               dictionary.substr(0, 120));
 }
 
-/// Reads the header of an .npy file, version 1, 2 or 3. Error `name: ...` where it is none.
+/// Reads the header of an .npy file, version 1, 2 or 3. Throws Error as `name: ...` if it is not one.
 inline NpyHeader parse_npy_header(std::string_view bytes, std::string_view name) {
   constexpr std::string_view magic = "\x93NUMPY";
   require(bytes.starts_with(magic) && bytes.size() >= 12, name,
-          ": this is no .npy file: it does not start with the bytes \\x93NUMPY; write it with numpy.save");
+          ": not an .npy file: it does not start with the bytes \\x93NUMPY; write it with numpy.save");
   const auto byte = [&](std::size_t i) {
     return static_cast<std::size_t>(static_cast<unsigned char>(bytes[i]));
   };
@@ -56,7 +56,7 @@ inline NpyHeader parse_npy_header(std::string_view bytes, std::string_view name)
   const std::size_t start = version == 1 ? 10 : 12;
   const std::size_t size = byte(8) | byte(9) << 8 | (version == 1 ? 0 : byte(10) << 16 | byte(11) << 24);
   require(size <= bytes.size() - start, name, ": the header has ", size, " bytes, but the file ends after ",
-          bytes.size() - start, " of them; it was cut off");
+          bytes.size() - start, " of them; the file is truncated");
   const std::string_view dictionary = bytes.substr(start, size);
 
   NpyHeader out;
@@ -80,7 +80,7 @@ inline NpyHeader parse_npy_header(std::string_view bytes, std::string_view name)
     shape.remove_prefix(shape.find_first_not_of(" ,"));
     std::size_t extent = 0;
     const auto [stop, problem] = std::from_chars(shape.data(), shape.data() + shape.size(), extent);
-    require(problem == std::errc(), name, ": the shape holds '", shape.substr(0, 40),
+    require(problem == std::errc(), name, ": the shape contains '", shape.substr(0, 40),
             "', expected whole numbers");
     out.shape.push_back(extent);
     shape.remove_prefix(static_cast<std::size_t>(stop - shape.data()));
@@ -88,7 +88,7 @@ inline NpyHeader parse_npy_header(std::string_view bytes, std::string_view name)
   return out;
 }
 
-/// The number at `bytes`, `Raw` being an unsigned integer of its size.
+/// The number at `bytes`; `Raw` is an unsigned integer of the same size.
 template <class Number, class Raw>
 double npy_number(const char* bytes, bool big_endian) {
   static_assert(sizeof(Number) == sizeof(Raw));
@@ -102,10 +102,10 @@ double npy_number(const char* bytes, bool big_endian) {
 
 }  // namespace npy_detail
 
-/// Reads the bytes of an .npy file (version 1 to 3) of float32 or float64, either byte order, C or Fortran
-/// order, of shape [frames, joints, 3] or [frames, 3 * joints]: positions in the world, y up, joints in the
-/// order of `skeleton`, `rate` frames per second. Offsets come from the positions (with_offsets_of). Errors
-/// are `name: ...`: another type or shape, a file cut off or too long, a number that is not finite, a rate
+/// Reads an .npy file (version 1 to 3) of float32 or float64, either byte order, C or Fortran order, of shape
+/// [frames, joints, 3] or [frames, 3 * joints]: world positions, y up, joints in the order of `skeleton`,
+/// `rate` frames per second. Offsets come from the positions (with_offsets_of). Throws Error as `name: ...`
+/// for another type or shape, a file that is truncated or too long, a value that is not finite, or a rate
 /// that is not above 0.
 inline PositionClip parse_position_npy(std::string_view bytes, const Skeleton& skeleton, double rate,
                                        std::string_view name) {
@@ -119,8 +119,8 @@ inline PositionClip parse_position_npy(std::string_view bytes, const Skeleton& s
   const bool flat = header.shape.size() == 2 && header.shape[1] == 3 * joints;
   require(cubic || flat, name, ": the shape is ", header.shape, ", expected [frames, ", joints,
           ", 3] or [frames, ", 3 * joints, "] for the ", joints, " joints of the bone list");
-  require(std::isfinite(rate) && rate > 0, name, ": the rate is given as ", rate,
-          " frames per second; an .npy file does not hold it: give a rate above 0");
+  require(std::isfinite(rate) && rate > 0, name, ": the rate is ", rate,
+          " frames per second, expected more than 0; an .npy file does not store it, so it must be given");
   const std::size_t frames = header.shape.front(), size = single ? 4 : 8, row = 3 * joints * size;
   const std::size_t found = bytes.size() - header.data;
   require(frames > 0, name, ": found no frames, expected at least one");
@@ -134,7 +134,7 @@ inline PositionClip parse_position_npy(std::string_view bytes, const Skeleton& s
   for (std::size_t f = 0; f < frames; ++f) {
     for (std::size_t j = 0; j < joints; ++j) {
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t column = cubic ? joints * k + j : 3 * j + k;  // as Fortran counts the columns
+        const std::size_t column = cubic ? joints * k + j : 3 * j + k;  // column index in Fortran order
         const std::size_t at = header.fortran_order ? frames * column + f : 3 * (joints * f + j) + k;
         const char* number = bytes.data() + header.data + at * size;
         const bool big = header.descr.front() == '>';
@@ -150,13 +150,12 @@ inline PositionClip parse_position_npy(std::string_view bytes, const Skeleton& s
   return out;
 }
 
-/// The clip as an .npy file: version 1, '<f8', C order, [frames, joints, 3]. The rate and the bones have no
-/// place in it.
+/// The clip as an .npy file: version 1, '<f8', C order, [frames, joints, 3]. Rate and bones are not stored.
 inline std::string format_position_npy(const PositionClip& clip) {
   check_writable(clip);
   std::string header = concat("{'descr': '<f8', 'fortran_order': False, 'shape': (", clip.frames, ", ",
                               clip.skeleton.size(), ", 3), }");
-  // With the ten bytes before it the header ends at a multiple of 64 bytes, in a line end.
+  // With the ten bytes before it, the header ends in a line break at a multiple of 64 bytes.
   header.append(63 - (10 + header.size()) % 64, ' ') += '\n';
   std::string out = "\x93NUMPY";
   out += '\x01';

@@ -1,4 +1,4 @@
-// Lists that people write: two texts a line with a tab between, comments and blank lines.
+// Hand-written lists: two tab-separated texts per line, with comments and blank lines.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -8,15 +8,16 @@
 
 namespace motiongan::motion {
 
-/// One line of such a list.
+/// One line of the list.
 struct TabLine {
-  std::size_t number = 0;          ///< in the file, from 1
-  std::string_view before, after;  ///< what stands on either side of the first tab, without blanks around it
+  std::size_t number = 0;          ///< line number, from 1
+  std::string_view before, after;  ///< text before and after the first tab, trimmed
   std::string_view raw;            ///< the whole line
 };
 
-/// Calls read(TabLine) for each line of `text`; lines that start with # and blank lines are skipped, as is a
-/// byte order mark. A line without a tab is an error, `name:line: ...`, that says what was `expected`.
+/// Calls read(TabLine) for each line of `text`, skipping blank lines, lines that start with #, and a byte
+/// order mark. Throws Error as `name:line: ...` for a line without a tab; `expected` describes the line in
+/// the message.
 template <class Read>
 void for_each_tab_line(std::string_view text, std::string_view name, std::string_view expected, Read&& read) {
   constexpr std::string_view blanks = " \t\r\v\f";

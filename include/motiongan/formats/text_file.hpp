@@ -1,4 +1,4 @@
-// Whole text files, read and written so that nothing is lost half way.
+// Reading whole text files, writing them atomically, and UTF-8 validation.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -12,7 +12,8 @@
 
 namespace motiongan::motion {
 
-/// All bytes of a file. `kind` is what messages call it, such as "BVH file".
+/// The bytes of a file. `kind` is what messages call it, such as "BVH file". Throws Error if it cannot be
+/// read.
 inline std::string read_text(const std::filesystem::path& path, std::string_view kind) {
   std::error_code problem;
   require(std::filesystem::exists(path, problem), kind, " ", path.string(), " does not exist");
@@ -23,18 +24,19 @@ inline std::string read_text(const std::filesystem::path& path, std::string_view
   in.seekg(0);
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   require(static_cast<std::size_t>(in.gcount()) == text.size(), kind, " ", path.string(),
-          " cannot be read to its end");
+          " could not be read completely");
   return text;
 }
 
-/// Writes `text` beside `path` and renames it, so that `path` never holds half a file.
+/// Writes `text` next to `path` and renames it, so that `path` never holds a partial file. Throws Error if
+/// that fails.
 inline void write_text_atomically(const std::filesystem::path& path, std::string_view text) {
   std::filesystem::path beside = path;
   beside += ".tmp";
   std::error_code problem;
   {
     std::ofstream out(beside, std::ios::binary | std::ios::trunc);
-    require(out.good(), "cannot write ", beside.string(), "; does its folder exist and may you write there?");
+    require(out.good(), "cannot write ", beside.string(), "; does its folder exist, and is it writable?");
     out.write(text.data(), static_cast<std::streamsize>(text.size()));
     out.flush();
     if (!out.good()) {
@@ -51,7 +53,7 @@ inline void write_text_atomically(const std::filesystem::path& path, std::string
   }
 }
 
-/// Whether the bytes are well-formed UTF-8, as files that carry text for others must be.
+/// Whether the bytes are well-formed UTF-8.
 inline bool is_utf8(std::string_view text) {
   const auto byte = [&](std::size_t at) {
     return at < text.size() ? static_cast<unsigned char>(text[at]) : 0u;
@@ -66,7 +68,7 @@ inline bool is_utf8(std::string_view text) {
     if (n == 0) return false;
     for (std::size_t k = 1; k < n; ++k)
       if ((byte(i + k) & 0xC0u) != 0x80u) return false;
-    // Overlong forms, surrogates and values past U+10FFFF show in the second byte.
+    // Overlong forms, surrogates and values past U+10FFFF are visible in the second byte.
     const unsigned second = byte(i + 1);
     if ((lead == 0xE0 && second < 0xA0) || (lead == 0xED && second > 0x9F) ||
         (lead == 0xF0 && second < 0x90) || (lead == 0xF4 && second > 0x8F))

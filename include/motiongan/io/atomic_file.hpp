@@ -1,4 +1,4 @@
-// A file that appears whole or not at all.
+// Atomic file writes: the complete file appears, or nothing changes.
 #pragma once
 #include <fcntl.h>
 #include <unistd.h>
@@ -15,9 +15,8 @@
 
 namespace motiongan::io {
 
-/// Writes `path` beside itself, as `path.tmp`. commit() brings it to the disk and renames it; without
-/// commit() the destructor removes it, and what stood at `path` before is untouched. Throws Error where a
-/// call fails.
+/// Writes to `path.tmp`; commit() flushes it to disk and renames it to `path`. Without commit() the
+/// destructor removes it and leaves any file at `path` untouched. Throws Error if a system call fails.
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path path) : path_(std::move(path)), beside_(path_) {
@@ -45,9 +44,9 @@ class AtomicFile {
   }
   void write(std::string_view text) { write(text.data(), text.size()); }
 
-  /// After this the new file stands at `path`, on the disk.
+  /// Flushes to disk and replaces `path`.
   void commit() {
-    check(::fsync(file_) == 0, "bring to the disk");
+    check(::fsync(file_) == 0, "flush");
     const int file = std::exchange(file_, -1);
     const bool closed = ::close(file) == 0;
     const bool renamed = closed && ::rename(beside_.c_str(), path_.c_str()) == 0;
@@ -57,8 +56,7 @@ class AtomicFile {
       errno = error;
       check(false, closed ? "rename into place" : "close");
     }
-    // The rename itself is on the disk only once the folder is; where a folder cannot be synced, the file
-    // still is whole.
+    // The rename is durable only once the folder is synced; if that fails, the file is still complete.
     const std::filesystem::path folder = path_.has_parent_path() ? path_.parent_path() : ".";
     const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (handle >= 0) {
@@ -71,7 +69,7 @@ class AtomicFile {
   void check(bool done, const char* what) const {
     if (!done)
       throw Error("cannot ", what, " ", beside_.string(), ": ", std::strerror(errno),
-                  "; is the folder there, writable, and not full?");
+                  "; does the folder exist, is it writable, and is there free space?");
   }
 
   std::filesystem::path path_, beside_;

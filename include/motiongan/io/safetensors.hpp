@@ -1,5 +1,5 @@
-// Named tensors in a file, in the format that PyTorch's world exchanges weights in:
-// 8 bytes length of the header (little endian), the header (JSON), the tensors' bytes.
+// Reads and writes safetensors files: the header's length (8 bytes, little endian), a JSON header, and the
+// tensors' data.
 #pragma once
 #include <bit>
 #include <cmath>
@@ -26,7 +26,7 @@ namespace motiongan::io {
 
 static_assert(std::endian::native == std::endian::little, "safetensors files hold little-endian numbers");
 
-/// IEEE half precision to float, exactly.
+/// IEEE half precision to float (exact).
 inline float half_to_float(std::uint16_t half) {
   const int exponent = (half >> 10) & 31, mantissa = half & 1023;
   float value = exponent == 0    ? std::ldexp(static_cast<float>(mantissa), -24)
@@ -36,18 +36,19 @@ inline float half_to_float(std::uint16_t half) {
   return half & 0x8000 ? -value : value;
 }
 
-/// The upper half of a float to that float.
+/// bfloat16, the upper half of a float, to float (exact).
 inline float bfloat_to_float(std::uint16_t upper) {
   return std::bit_cast<float>(static_cast<std::uint32_t>(upper) << 16);
 }
 
-/// One tensor of a file: its numbers as they are stored, row-major.
+/// One tensor of a file: its elements as stored, row-major.
 struct SafeTensor {
   std::string dtype;               ///< F64 F32 F16 BF16 I64 I32 I16 I8 U64 U32 U16 U8 BOOL
-  std::vector<std::size_t> shape;  ///< empty for a single number
-  std::vector<std::byte> data;     ///< dtype_size(dtype) bytes for each number
+  std::vector<std::size_t> shape;  ///< empty for a scalar
+  std::vector<std::byte> data;     ///< dtype_size(dtype) bytes per element
 
   /// A tensor of `shape` with these `values` (float, double, std::int32_t, std::int64_t or std::uint8_t).
+  /// Throws Error if their number does not match the shape.
   template <class T>
   static SafeTensor of(std::vector<std::size_t> shape, const std::vector<T>& values) {
     SafeTensor tensor{dtype_of<T>(), std::move(shape), {}};
@@ -59,11 +60,11 @@ struct SafeTensor {
     return tensor;
   }
 
-  /// How many numbers there are.
+  /// The number of elements.
   std::size_t count() const { return tensor_bytes(dtype, shape, "a tensor") / dtype_size(dtype); }
 
-  /// The numbers as T. A floating T takes F64, F32, F16 and BF16; a whole T takes the whole types and BOOL.
-  /// Throws Error for the other kind, and where a finite number has no place in T.
+  /// The elements as T. A floating-point T accepts F64, F32, F16 and BF16; an integer T the integer types and
+  /// BOOL. Throws Error for any other type, and if a finite element is out of T's range.
   template <class T>
   requires std::is_arithmetic_v<T> std::vector<T> as()
   const {
@@ -83,8 +84,8 @@ struct SafeTensor {
       if (dtype == "U16") return convert<std::uint16_t, T>(same);
       if (dtype == "U8" || dtype == "BOOL") return convert<std::uint8_t, T>(same);
     }
-    throw Error("a tensor of type ", dtype, " was asked for ",
-                std::is_floating_point_v<T> ? "floating-point" : "whole", " numbers");
+    throw Error("a tensor has type ", dtype, ", expected ",
+                std::is_floating_point_v<T> ? "floating-point" : "integer", " elements");
   }
 
   friend bool operator==(const SafeTensor&, const SafeTensor&) = default;
@@ -114,33 +115,33 @@ struct SafeTensor {
         fits = !std::isfinite(wide) || std::abs(wide) <= std::numeric_limits<T>::max();
       else
         fits = std::in_range<T>(wide);
-      require(fits, "number ", i, " of a tensor of type ", dtype, " is ", +wide,
-              ", too large for what was asked for");
+      require(fits, "element ", i, " of a tensor of type ", dtype, " is ", +wide,
+              ", out of range for the requested type");
       values[i] = static_cast<T>(wide);
     }
     return values;
   }
 };
 
-/// The content of one safetensors file.
+/// The contents of one safetensors file.
 class SafeTensors {
  public:
   std::map<std::string, SafeTensor> tensors;
   std::map<std::string, std::string> metadata;
 
-  /// Reads a whole file. Throws Error, naming the file and what is wrong with it, unless the file keeps to
-  /// the format in every respect; memory is taken only for what the file really holds.
+  /// Reads a file. Throws Error, naming the file and the problem, unless it conforms to the format in every
+  /// respect. Sizes claimed by the header are checked before any memory is allocated for them.
   static SafeTensors read(const std::filesystem::path& path);
 
-  /// Writes a whole file: beside `path` first, then renamed, so that nobody ever sees half of it. Equal
-  /// content gives equal bytes: tensors stand in the order of their names. Throws Error.
+  /// Writes a file atomically, with the tensors sorted by name: equal contents give equal bytes. Throws Error
+  /// if a tensor's data does not match its type and shape, a name is not UTF-8, or writing fails.
   void write(const std::filesystem::path& path) const;
 
-  /// The tensor called `name`. Throws Error where there is none.
+  /// The tensor called `name`. Throws Error if there is none.
   const SafeTensor& at(const std::string& name) const {
     const auto found = tensors.find(name);
     require(found != tensors.end(), "there is no tensor \"", name, "\" among the ", tensors.size(),
-            " of the file");
+            " in the file");
     return found->second;
   }
 };
@@ -150,13 +151,13 @@ inline SafeTensors SafeTensors::read(const std::filesystem::path& path) {
   const std::string where = path.string();
   std::error_code error;
   require(std::filesystem::is_regular_file(path, error), where, ": no such file",
-          std::filesystem::exists(path, error) ? " (it is something else)" : "");
+          std::filesystem::exists(path, error) ? " (it is not a regular file)" : "");
   const std::uint64_t size = std::filesystem::file_size(path, error);
   std::ifstream file(path, std::ios::binary);
   require(!error && file.is_open(), where, ": cannot be opened: ", std::strerror(errno));
   const auto fetch = [&](void* to, std::size_t bytes) {
     file.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes));
-    require(static_cast<std::size_t>(file.gcount()) == bytes, where, ": cannot be read to its end");
+    require(static_cast<std::size_t>(file.gcount()) == bytes, where, ": could not be read to its end");
   };
 
   std::uint64_t length = 0;
@@ -206,7 +207,7 @@ inline void SafeTensors::write(const std::filesystem::path& path) const {
   } catch (const nlohmann::json::exception& error) {
     throw Error(where, ": a tensor's name or the metadata is not UTF-8: ", error.what());
   }
-  text.resize((text.size() + 7) / 8 * 8, ' ');  // so that the data begin at a multiple of 8
+  text.resize((text.size() + 7) / 8 * 8, ' ');  // aligns the data to 8 bytes
 
   AtomicFile file(path);
   const std::uint64_t length = text.size();

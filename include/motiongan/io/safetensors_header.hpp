@@ -1,5 +1,5 @@
-// The JSON header of a safetensors file, read event by event: nothing is built that the file does not hold,
-// and every value that is not what the format says is refused where it stands.
+// Parses and validates the JSON header of a safetensors file with a SAX reader, which rejects the first value
+// that the format does not allow.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace motiongan::io {
 
-/// Bytes of one number of a safetensors type (F32, I64 ...), or 0 when there is no such type.
+/// Bytes per element of a safetensors type (F32, I64, ...); 0 if there is no such type.
 inline std::size_t dtype_size(std::string_view dtype) {
   if (dtype == "F64" || dtype == "I64" || dtype == "U64") return 8;
   if (dtype == "F32" || dtype == "I32" || dtype == "U32") return 4;
@@ -31,7 +31,7 @@ inline std::string shape_text(const std::vector<std::size_t>& shape) {
   return text + "]";
 }
 
-/// Bytes of a tensor. Throws Error for an unknown type or a product that does not fit into 64 bits.
+/// Bytes of a tensor. Throws Error for an unknown type or a size that overflows 64 bits.
 inline std::size_t tensor_bytes(const std::string& dtype, const std::vector<std::size_t>& shape,
                                 const std::string& where) {
   std::size_t bytes = dtype_size(dtype);
@@ -53,15 +53,15 @@ struct SafeTensorsHeader {
   std::map<std::string, std::string> metadata;
 };
 
-/// Receives the events of nlohmann's parser and fills a SafeTensorsHeader; throws Error at the first that is
-/// out of place. `where_` (the file's name) stands before every message.
+/// SAX handler that fills a SafeTensorsHeader. Throws Error at the first unexpected event; `where` (the
+/// file's name) starts every message.
 class SafeTensorsHeaderReader : public nlohmann::json_sax<nlohmann::json> {
  public:
   SafeTensorsHeaderReader(SafeTensorsHeader& header, std::string where)
       : header_(header), where_(std::move(where)) {}
 
   bool null() override { return refuse("null"); }
-  bool boolean(bool) override { return refuse("a truth value"); }
+  bool boolean(bool) override { return refuse("a boolean"); }
   bool number_integer(number_integer_t value) override {
     return refuse("the number " + std::to_string(value));
   }
@@ -94,12 +94,12 @@ class SafeTensorsHeaderReader : public nlohmann::json_sax<nlohmann::json> {
 
   bool key(string_t& name) override {
     if (depth_ == 1) {
-      require(!has_seen(names_seen_, name), where_, ": the name \"", name, "\" stands twice in the header");
+      require(!has_seen(names_seen_, name), where_, ": the name \"", name, "\" appears twice in the header");
       name_ = name;
       in_metadata_ = name == "__metadata__";
       if (!in_metadata_) entry_ = &header_.entries[name];
     } else {
-      require(!has_seen(fields_seen_, name), where(), ": \"", name, "\" stands there twice");
+      require(!has_seen(fields_seen_, name), where(), ": \"", name, "\" appears twice");
       require(in_metadata_ || name == "dtype" || name == "shape" || name == "data_offsets", where(),
               ": unknown field \"", name, "\", expected dtype, shape and data_offsets");
       field_ = name;
@@ -144,17 +144,17 @@ class SafeTensorsHeaderReader : public nlohmann::json_sax<nlohmann::json> {
     return where_ + ": " + (in_metadata_ ? "__metadata__" : "tensor \"" + name_ + "\"");
   }
 
-  /// Always throws; bool because the parser's events are.
+  /// Always throws; returns bool like the parser's event handlers.
   bool refuse(const std::string& found) const {
     if (depth_ == 0) throw Error(where_, ": the header is ", found, ", expected an object of tensors");
     if (depth_ == 1) throw Error(where(), " is ", found, ", expected an object");
     throw Error(where(), ": \"", field_, "\" holds ", found, ", expected ",
-                in_metadata_ || field_ == "dtype" ? "a string" : "a list of whole numbers from 0 on");
+                in_metadata_ || field_ == "dtype" ? "a string" : "a list of whole numbers of at least 0");
   }
 
   SafeTensorsHeader& header_;
   std::string where_;
-  int depth_ = 0;  ///< objects open: 1 the header, 2 a tensor's entry or the metadata
+  int depth_ = 0;  ///< open objects: 1 the header, 2 a tensor's entry or the metadata
   bool in_metadata_ = false, in_array_ = false;
   std::string name_, field_;
   std::map<std::string, bool> names_seen_, fields_seen_;
@@ -162,8 +162,8 @@ class SafeTensorsHeaderReader : public nlohmann::json_sax<nlohmann::json> {
   std::vector<std::size_t>* array_ = nullptr;
 };
 
-/// Each tensor's bytes must be what its type and shape need, and together they must fill the `data_size`
-/// bytes after the header without gap or overlap. Throws Error otherwise.
+/// Throws Error unless every tensor has as many bytes as its type and shape need, and together they fill the
+/// `data_size` bytes after the header without gap or overlap.
 inline void check_layout(const SafeTensorsHeader& header, std::size_t data_size, const std::string& where) {
   std::vector<std::pair<std::pair<std::size_t, std::size_t>, const std::string*>> spans;
   for (const auto& [name, entry] : header.entries) {
@@ -183,7 +183,7 @@ inline void check_layout(const SafeTensorsHeader& header, std::size_t data_size,
   std::size_t at = 0;
   for (const auto& [span, name] : spans) {
     require(span.first >= at, where, ": tensor \"", *name, "\" begins at byte ", span.first,
-            ", inside of the one before, which ends at ", at);
+            ", inside the previous tensor, which ends at ", at);
     require(span.first == at, where, ": ", span.first - at, " bytes before tensor \"", *name,
             "\" belong to no tensor");
     at = span.second;
@@ -191,10 +191,11 @@ inline void check_layout(const SafeTensorsHeader& header, std::size_t data_size,
   require(at == data_size, where, ": the last ", data_size - at, " bytes of the file belong to no tensor");
 }
 
-/// Reads and checks the header `text`; `data_size` bytes follow it in the file. Throws Error.
+/// Parses and validates the header `text`; `data_size` bytes follow it in the file. Throws Error, starting
+/// with `where`, if the header is malformed or does not match the data.
 inline SafeTensorsHeader parse_safetensors_header(const std::string& text, std::size_t data_size,
                                                   const std::string& where) {
-  // The parser would skip a byte order mark and take a zero byte for the end; the format has neither.
+  // The parser would skip a byte order mark and stop at a zero byte; the format allows neither.
   require(!text.empty() && text[0] == '{', where,
           ": the header does not begin with {; is this a safetensors file?");
   require(text.find('\0') == std::string::npos, where, ": the header contains a zero byte");

@@ -1,4 +1,4 @@
-// How much motions differ from each other: over all of them, and among those of one description.
+// Diversity and multimodality: how much motions differ overall, and within one description.
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -25,7 +25,8 @@ inline double apart(std::span<const float> features, std::size_t k, std::size_t 
   return std::sqrt(squares);
 }
 
-/// Sum of the distances of `pairs` pairs, or of all where there are no more than that, and their number.
+/// Sum of the distances of `pairs` random pairs, or of all pairs if there are no more, and the number of
+/// pairs.
 inline std::pair<double, std::size_t> pair_distances(std::span<const float> features, std::size_t k,
                                                      std::size_t pairs, std::uint64_t& state) {
   const std::size_t n = features.size() / k, all = n * (n - 1) / 2;
@@ -44,38 +45,38 @@ inline std::pair<double, std::size_t> pair_distances(std::span<const float> feat
 }
 
 inline void check_samples(std::span<const float> features, std::size_t k, std::size_t pairs) {
-  require(k > 0 && features.size() % k == 0, "found ", features.size(), " numbers, expected rows of ", k,
+  require(k > 0 && features.size() % k == 0, "found ", features.size(), " values, expected rows of ", k,
           " features");
-  require(pairs > 0, "the mean distance of 0 pairs was asked for, expected at least 1");
+  require(pairs > 0, "pairs is 0, expected at least 1");
 }
 
 }  // namespace diversity_detail
 
-/// Diversity: mean Euclidean distance of `pairs` random pairs among the features [n, dimensions] of motions
-/// of all descriptions together (Guo et al. 2020, Action2Motion, section 5.1; S_d = 200 there), in the
-/// features' unit. Best near that of real motion; more is not better. Here a motion is never paired with
-/// itself, and where there are no more than `pairs` pairs in all, each counts once. The same seed takes the
-/// same pairs. Error if the sizes do not fit or there are fewer than 2 motions.
+/// Diversity: mean Euclidean distance of `pairs` random pairs of the features [n, dimensions] of motions of
+/// all descriptions (Guo et al. 2020, Action2Motion, section 5.1, with S_d = 200), in the features' unit. It
+/// should be close to that of real motion; higher is not better. Unlike the paper's, a motion is never paired
+/// with itself, and if there are at most `pairs` pairs, each is used once. The same seed gives the same
+/// pairs. Throws Error if the sizes do not fit or there are fewer than 2 motions.
 inline double diversity(std::span<const float> features, std::size_t dimensions, std::size_t pairs = 200,
                         std::uint64_t seed = 1) {
   diversity_detail::check_samples(features, dimensions, pairs);
   require(features.size() >= 2 * dimensions, "found the features of ", features.size() / dimensions,
-          " motions, expected at least 2 to tell how they differ");
+          " motions, expected at least 2");
   const auto [sum, count] = diversity_detail::pair_distances(features, dimensions, pairs, seed);
   return sum / static_cast<double>(count);
 }
 
-/// Multimodality: the same distance among motions of one description, mean over descriptions (Guo et al.
-/// 2020; S_l = 20 pairs each there). `features` are [n, dimensions], `descriptions` [n] says of which
-/// description each motion is; one that has a single motion is left out. It is 0 for a generator that makes
-/// the same motion whatever the noise. Error if the sizes do not fit or no description has two motions.
+/// Multimodality: the same distance among motions of one description, averaged over descriptions (Guo et al.
+/// 2020, with S_l = 20 pairs each). `features` are [n, dimensions], `descriptions` [n] the index of each
+/// motion's description; a description with a single motion is left out. It is 0 for a generator that ignores
+/// its noise. Throws Error if the sizes do not fit or no description has two motions.
 inline double multimodality(std::span<const float> features, std::size_t dimensions,
                             std::span<const std::size_t> descriptions, std::size_t pairs = 20,
                             std::uint64_t seed = 1) {
   diversity_detail::check_samples(features, dimensions, pairs);
   require(features.size() == dimensions * descriptions.size(), "found the features of ",
           features.size() / dimensions, " motions and the descriptions of ", descriptions.size(),
-          ", expected as many");
+          ", expected the same number");
   std::map<std::size_t, std::vector<float>> by_description;
   for (std::size_t i = 0; i < descriptions.size(); ++i) {
     const std::span<const float> row = features.subspan(i * dimensions, dimensions);

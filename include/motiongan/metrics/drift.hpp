@@ -1,4 +1,4 @@
-// Whether a motion that is generated for a long time stays what it was: its poses, second by second.
+// Drift of long generated motion: statistics of its poses, second by second.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -15,24 +15,24 @@
 
 namespace motiongan {
 
-/// The poses of one second, or the mean of several such rows weighted by their frames. All values but
-/// `outside` are in normalised units (standard deviations of the training data).
+/// Statistics of the poses of one second, or the mean of several such rows weighted by their frames. All
+/// values but `outside` are in normalised units (standard deviations of the training data).
 struct DriftRow {
   std::size_t second = 0, frames = 0;
-  double mean = 0;     ///< distance of the mean pose from the training mean: root mean square over dimensions
-  double spread = 0;   ///< standard deviation over the second: root mean square over dimensions
-  double speed = 0;    ///< change of the pose per second: root mean square over dimensions, mean over frames
-  double outside = 0;  ///< share of values outside the training range, widened by 5% of its width on each
-                       ///< side; NaN where the range is not known
+  double mean = 0;     ///< distance of the mean pose from the training mean, RMS over dimensions
+  double spread = 0;   ///< standard deviation over the second, RMS over dimensions
+  double speed = 0;    ///< change of the pose per second, RMS over dimensions, mean over frames
+  double outside = 0;  ///< fraction of values outside the training range, widened by 5% of its width at
+                       ///< each end; NaN if the range is unknown
 };
 
-/// A whole motion, its first tenth and its last tenth (of its seconds; at least one).
+/// A whole motion, and its first and last tenth (in seconds, at least one second).
 struct DriftSummary {
   double seconds = 0;
-  DriftRow whole, first, last;  ///< `second` is that of the first row in it, `frames` their sum
+  DriftRow whole, first, last;  ///< `second` is that of the first row, `frames` the sum
 };
 
-/// Measures poses as they are made. Memory grows by one row a second.
+/// Accumulates statistics of poses as they are generated. Memory grows by one row per second.
 class DriftMeter {
  public:
   explicit DriftMeter(const motion::MotionFormat& format)
@@ -45,8 +45,8 @@ class DriftMeter {
     }
   }
 
-  /// Adds the next poses, [frames, dof], normalised. It does not matter in which pieces they come. Error if
-  /// the size does not fit.
+  /// Adds the next normalised poses, [frames, dof], in pieces of any length. Throws Error if the size does
+  /// not fit.
   void add(std::span<const float> poses, std::size_t frames) {
     require(poses.size() == frames * dof_, "found ", poses.size(), " pose values, expected ", frames,
             " frames x ", dof_, " dimensions");
@@ -55,25 +55,25 @@ class DriftMeter {
 
   std::size_t frames() const { return frames_; }
 
-  /// One row for every second that has a frame, the last one perhaps of fewer frames. Frame f is part of
-  /// second floor(f / rate).
+  /// One row per second that has a frame; the last one may be incomplete. Frame f belongs to second
+  /// floor(f / rate).
   std::vector<DriftRow> rows() const {
     std::vector<DriftRow> out = rows_;
     if (current_.frames > 0) out.push_back(finished_row());
     return out;
   }
 
-  /// Error if there are no frames.
+  /// Throws Error if there are no frames.
   DriftSummary summary() const {
     const std::vector<DriftRow> all = rows();
-    require(!all.empty(), "no frames were measured; a summary of their drift needs at least one");
+    require(!all.empty(), "no frames were measured; a drift summary needs at least one");
     const std::size_t tenth = std::max<std::size_t>(1, all.size() / 10);
     const std::span<const DriftRow> span(all);
     return {static_cast<double>(frames_) / rate_, average(span), average(span.first(tenth)),
             average(span.last(tenth))};
   }
 
-  /// The rows as a table: second, frames, mean, spread, speed, outside (empty where it is not known).
+  /// Writes the rows as CSV: second, frames, mean, spread, speed, outside (empty if unknown).
   void write_csv(const std::filesystem::path& path) const {
     std::string text = "second,frames,mean,spread,speed,outside\n";
     for (const DriftRow& r : rows())
@@ -84,7 +84,7 @@ class DriftMeter {
 
  private:
   void add_frame(std::span<const float> pose) {
-    // A little is added so that frame 3 at 3 per second is in second 1 whatever the division gives.
+    // The epsilon puts frame 3 at 3 frames per second into second 1, whatever the rounding of the division.
     const auto second = static_cast<std::size_t>(static_cast<double>(frames_) / rate_ + 1e-9);
     if (current_.frames > 0 && second != current_.second) {
       rows_.push_back(finished_row());
@@ -102,10 +102,10 @@ class DriftMeter {
       squares_[k] += value * value;
       step += change * change;
       before_[k] = value;
-      // Written so that a NaN is outside.
+      // Negated so that a NaN counts as outside.
       if (!low_.empty() && !(value >= low_[k] && value <= high_[k])) current_.outside += 1;
     }
-    if (frames_ > 0) {  // the first frame of all has none before it
+    if (frames_ > 0) {  // the very first frame has no predecessor
       current_.speed += std::sqrt(step / static_cast<double>(dof_)) * rate_;
       ++steps_;
     }
@@ -146,7 +146,7 @@ class DriftMeter {
   double rate_;
   std::size_t dof_, frames_ = 0, steps_ = 0;
   std::vector<double> low_, high_;              // widened, [dof] or empty
-  std::vector<double> sum_, squares_, before_;  // of the current second; the frame before, [dof]
+  std::vector<double> sum_, squares_, before_;  // of the current second; the previous frame, [dof]
   DriftRow current_;
   std::vector<DriftRow> rows_;
 };

@@ -1,5 +1,4 @@
-// The error of the motion-prediction papers: Euler angles against Euler angles (SPEC section 7, items 4 and
-// 5).
+// The Euler-angle error of the motion-prediction papers (Martinez et al. 2017; see docs/evaluation.md).
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -12,8 +11,8 @@
 
 namespace motiongan {
 
-/// Euler angles, in radians, of a rotation matrix as the motion-prediction papers take them (SPEC section 7,
-/// item 4), their branch at |R02| = 1 included: another convention gives other errors.
+/// Euler angles, in radians, of a rotation matrix in the motion-prediction papers' convention, including
+/// their branch at |R02| = 1: another convention gives different errors.
 inline motion::Vec3 prediction_euler(const motion::Mat3& r) {
   if (r[2] >= 1 || r[2] <= -1) {
     const double delta = std::atan2(r[1], r[2]);
@@ -23,9 +22,9 @@ inline motion::Vec3 prediction_euler(const motion::Mat3& r) {
   return {std::atan2(r[5] / c, r[8] / c), second, std::atan2(r[1] / c, r[0] / c)};
 }
 
-/// Of an exponential map, in radians. The papers' eps in the axis is kept too.
+/// The same for an exponential map, in radians, with the papers' epsilon in the normalisation of the axis.
 inline motion::Vec3 prediction_euler(const motion::Vec3& expmap) {
-  constexpr double eps = 1.1920928955078125e-7;  // of single precision; keeps a zero from being divided by
+  constexpr double eps = 1.1920928955078125e-7;  // single-precision epsilon; avoids a division by zero
   const double angle = motion::length(expmap);
   const motion::Vec3 axis = motion::scale(expmap, 1 / (angle + eps));
   const motion::Mat3 k{0, -axis[2], axis[1], axis[2], 0, -axis[0], -axis[1], axis[0], 0};
@@ -35,15 +34,14 @@ inline motion::Vec3 prediction_euler(const motion::Vec3& expmap) {
   return prediction_euler(r);
 }
 
-/// Error of each frame, [frames]: the root of the sum of squared differences of Euler angles, without
-/// wrapping, over the angles whose standard deviation in the truth is above 1e-4 (SPEC section 7, item 5).
-/// `truth` and `prediction` are exponential maps [frames, 3 * joints], the root's left out. Error if the
-/// sizes do not fit.
+/// Error of each frame, [frames], in radians: the Euclidean distance between Euler angles, without wrapping,
+/// over the angles whose standard deviation in the ground truth is above 1e-4. `truth` and `prediction` are
+/// exponential maps [frames, 3 * joints], without the root's. Throws Error if the sizes do not fit.
 inline std::vector<double> euler_errors(std::span<const double> truth, std::span<const double> prediction,
                                         std::size_t frames) {
-  require(truth.size() == prediction.size(), "found ", truth.size(), " numbers of the truth and ",
-          prediction.size(), " of the prediction, expected as many");
-  require(frames > 0 && truth.size() % (3 * frames) == 0, "found ", truth.size(), " numbers in ", frames,
+  require(truth.size() == prediction.size(), "found ", truth.size(), " values of the ground truth and ",
+          prediction.size(), " of the prediction, expected the same number");
+  require(frames > 0 && truth.size() % (3 * frames) == 0, "found ", truth.size(), " values in ", frames,
           " frames, expected 3 for every joint and frame, and at least one frame");
   const std::size_t width = truth.size() / frames;
   const auto euler = [](std::span<const double> expmaps) {
@@ -70,17 +68,18 @@ inline std::vector<double> euler_errors(std::span<const double> truth, std::span
   return errors;
 }
 
-/// The same for motions of one skeleton, rate and length, [frames]: local rotations of all joints but `root`
-/// (whose place and rotation the papers leave out). The papers' texts hold the exponential maps of the
-/// inverse rotations; they are inverted here too, so that a BVH file gives the errors of its text. Error if
-/// the motions do not fit.
+/// The same for motions of one skeleton, rate and length, [frames]: local rotations of all joints but `root`,
+/// whose position and rotation the papers leave out. The papers' text files hold exponential maps of the
+/// inverse rotations; rotations are inverted here too, so that a BVH file gives the same errors as its text
+/// file. Throws Error if skeletons, rates or lengths differ.
 inline std::vector<double> euler_errors(const motion::Motion& truth, const motion::Motion& prediction,
                                         std::size_t root = 0) {
   const motion::Motion* const both[] = {&truth, &prediction};
   require(truth.frames == prediction.frames && truth.skeleton.size() == prediction.skeleton.size(),
-          "the truth has ", truth.frames, " frames of ", truth.skeleton.size(), " joints, the prediction ",
-          prediction.frames, " of ", prediction.skeleton.size(), ", expected as many");
-  require(std::abs(truth.rate - prediction.rate) <= 1e-6 * truth.rate, "the truth has ", truth.rate,
+          "the ground truth has ", truth.frames, " frames of ", truth.skeleton.size(), " joints, the "
+          "prediction ",
+          prediction.frames, " of ", prediction.skeleton.size(), ", expected the same");
+  require(std::abs(truth.rate - prediction.rate) <= 1e-6 * truth.rate, "the ground truth has ", truth.rate,
           " frames per second, the prediction ", prediction.rate, "; resample() one of them");
   require(root < truth.skeleton.size(), "root joint ", root, " is not one of the skeleton's ",
           truth.skeleton.size(), " joints");

@@ -1,4 +1,4 @@
-// Whether feet slide over the floor that they should stand on.
+// Foot skating: how often feet slide over the floor.
 #pragma once
 #include <algorithm>
 #include <cctype>
@@ -19,23 +19,24 @@
 namespace motiongan {
 
 struct FootSkateOptions {
-  std::vector<std::string> feet = {};  ///< names of joints; empty: found by find_feet
-  double unit_metres = 0;              ///< size of the file's unit; 0: not known, a leg is taken for a metre
-  double height = 0.05;                ///< metres above the floor: lower feet stand on it
-  double speed = 0.5;                  ///< metres per second over the ground: faster feet slide
-  double seconds = 0.25;               ///< the mean speed over that long must be above `speed` too
-  std::optional<double> floor = {};    ///< height of the floor in the file's unit; not set: that of the feet
-  double floor_percentile = 0.05;      ///< share of the feet's heights that lie below the floor then
+  std::vector<std::string> feet = {};  ///< joint names; empty: found by find_feet()
+  double unit_metres = 0;              ///< the file's unit in metres; 0: unknown, a leg counts as 1 m
+  double height = 0.05;                ///< metres above the floor below which a foot is in contact
+  double speed = 0.5;                  ///< horizontal speed in m/s above which a foot slides
+  double seconds = 0.25;               ///< window over which the mean speed must exceed `speed` too
+  std::optional<double> floor = {};    ///< floor height in the file's unit; unset: from the feet
+  double floor_percentile = 0.05;      ///< percentile (0 .. 1) of the feet's heights used as the floor
 };
 
-/// What was found of the feet; of several motions with +=.
+/// Foot-skating counts of one motion; += combines several.
 struct FootSkate {
-  std::size_t steps = 0;    ///< from one frame to the next
+  std::size_t steps = 0;    ///< pairs of consecutive frames
   std::size_t sliding = 0;  ///< steps in which a foot slides
   std::size_t contact = 0;  ///< steps in which a foot is near the floor
 
-  /// The foot-skate ratio, 0 .. 1; 0 where no foot is ever near the floor: look at contact_share() too.
+  /// The foot-skate ratio, 0 .. 1. It is also 0 if no foot is ever near the floor: check contact_share() too.
   double ratio() const { return steps > 0 ? static_cast<double>(sliding) / static_cast<double>(steps) : 0; }
+  /// Fraction of steps with a foot near the floor, 0 .. 1.
   double contact_share() const {
     return steps > 0 ? static_cast<double>(contact) / static_cast<double>(steps) : 0;
   }
@@ -53,7 +54,7 @@ inline std::string joint_names(const motion::Skeleton& skeleton) {
   return all;
 }
 
-/// A left and a right foot, or nothing.
+/// A left and a right foot, or nothing if not both are found.
 inline std::vector<std::size_t> feet_by_name(const motion::Skeleton& skeleton) {
   std::vector<std::string> names;
   for (const motion::Joint& joint : skeleton.joints) {
@@ -75,24 +76,24 @@ inline std::vector<std::size_t> feet_by_name(const motion::Skeleton& skeleton) {
 
 }  // namespace foot_skate_detail
 
-/// Whether find_feet(skeleton) finds any.
+/// Whether find_feet(skeleton) succeeds.
 inline bool has_feet(const motion::Skeleton& skeleton) {
   return !foot_skate_detail::feet_by_name(skeleton).empty();
 }
 
-/// The feet of a skeleton by their joints' names: the first toe ("LeftToeBase", "Toes_L"), or else foot, or
-/// else ankle of each side. Error, with the names that there are, where none are found.
+/// Finds the feet of a skeleton by joint name: the first toe ("LeftToeBase", "Toes_L") of each side, or else
+/// the first foot, or else the first ankle. Throws Error, listing the joint names, if there are none.
 inline std::vector<std::size_t> find_feet(const motion::Skeleton& skeleton) {
   std::vector<std::size_t> feet = foot_skate_detail::feet_by_name(skeleton);
   require(
       !feet.empty(),
-      "no joints are called by a side and toe, foot or ankle (such as LeftToeBase, Toes_L); name the feet "
-      "yourself, as two of: ",
+      "no joint names contain a side and toe, foot or ankle (such as LeftToeBase, Toes_L); name the feet "
+      "yourself, two of: ",
       foot_skate_detail::joint_names(skeleton));
   return feet;
 }
 
-/// Joints by the names that options give, or find_feet. Error for a name that is not there.
+/// The joints of the given names, or find_feet(skeleton) if there are none. Throws Error for an unknown name.
 inline std::vector<std::size_t> find_feet(const motion::Skeleton& skeleton,
                                           std::span<const std::string> names) {
   if (names.empty()) return find_feet(skeleton);
@@ -100,16 +101,16 @@ inline std::vector<std::size_t> find_feet(const motion::Skeleton& skeleton,
   for (const std::string& name : names) {
     const int at = skeleton.find(name);
     require(at >= 0, "there is no joint '", name,
-            "' to be a foot; the skeleton has: ", foot_skate_detail::joint_names(skeleton));
+            "' to use as a foot; the skeleton has: ", foot_skate_detail::joint_names(skeleton));
     out.push_back(static_cast<std::size_t>(at));
   }
   return out;
 }
 
-/// Length of a leg in the file's unit: from the joint that all feet hang on down to each foot, along the
-/// bones at rest, mean over feet. Error where that has no length.
+/// Leg length in the file's unit: along the rest pose's bones from the nearest common ancestor of all feet to
+/// each foot, averaged over feet. Throws Error if it is 0.
 inline double leg_length(const motion::Skeleton& skeleton, std::span<const std::size_t> feet) {
-  std::vector<std::size_t> below(skeleton.size(), 0);  // feet that hang on each joint
+  std::vector<std::size_t> below(skeleton.size(), 0);  // number of feet below each joint
   for (const std::size_t foot : feet)
     for (int j = static_cast<int>(foot); j >= 0; j = skeleton.joints[static_cast<std::size_t>(j)].parent)
       ++below[static_cast<std::size_t>(j)];
@@ -124,19 +125,20 @@ inline double leg_length(const motion::Skeleton& skeleton, std::span<const std::
   return sum / static_cast<double>(feet.size());
 }
 
-/// Foot skating, as Karunratanakul et al. 2023 (GMD) and Xie et al. 2024 (OmniControl) measure it: the share
-/// of steps from a frame to the next in which a foot is near the floor (below 5 cm) in both frames, moves
-/// over the ground (x and z) faster than 0.5 m/s, and also does so on average over the 0.25 s around (theirs:
-/// 5 steps at 20 per second; what lies beyond the motion's ends counts as 0, as in their code).
+/// Foot skating as measured by Karunratanakul et al. 2023 (GMD) and Xie et al. 2024 (OmniControl): the
+/// fraction of steps between consecutive frames in which a foot is near the floor (below 5 cm) in both
+/// frames, moves horizontally (x and z) faster than 0.5 m/s, and also does so on average over the surrounding
+/// 0.25 s (5 steps at 20 frames per second in their code; as there, steps beyond the motion's ends count as
+/// 0).
 ///
-/// Theirs is motion in metres with the floor at 0. Here the floor is the 5th percentile of the heights of
-/// the feet in this motion, and a file's unit that is not known is found by taking a leg for a metre. So a
-/// motion that flies or hangs stands on air, and what it does there is measured; and the quicker a foot is
-/// between two frames the less is seen of it: compare motions of one rate. Real motion does not have 0: feet
-/// roll and are set down in motion. A motion whose root has no track slides wherever it walks.
+/// Their motion is in metres with the floor at 0. Here the floor is the 5th percentile of the heights of the
+/// feet in the motion, and an unknown unit is derived by taking a leg to be 1 m long. A motion that floats is
+/// therefore measured against a floor in the air. Fast movements between two frames are missed, so compare
+/// motions of one rate. Real motion does not score 0, because feet roll and touch down while moving. A motion
+/// without root translation slides whenever it walks.
 ///
-/// `positions` are [frames, joints] in the world, y up. Error if sizes do not fit, for fewer than 2 frames,
-/// and where there are no feet.
+/// `positions` are [frames, joints] in world space, y up, at `rate` frames per second. Throws Error if the
+/// sizes do not fit, for fewer than 2 frames, for options out of range and if there are no feet.
 inline FootSkate foot_skate(const motion::Skeleton& skeleton, std::span<const motion::Vec3> positions,
                             double rate, const FootSkateOptions& options = {}) {
   const std::size_t joints = skeleton.size();
@@ -146,7 +148,7 @@ inline FootSkate foot_skate(const motion::Skeleton& skeleton, std::span<const mo
       rate > 0 && options.unit_metres >= 0 && options.height > 0 && options.speed > 0 && options.seconds > 0,
       "found a rate of ", rate, ", a unit of ", options.unit_metres, " m, a height of ", options.height,
       " m, a speed of ", options.speed, " m/s and a time of ", options.seconds,
-      " s to measure feet by; expected more than 0 (a unit that is not known: 0)");
+      " s; expected values above 0 (an unknown unit: 0)");
   const std::vector<std::size_t> feet = find_feet(skeleton, options.feet);
   const double metre = 1 / (options.unit_metres > 0 ? options.unit_metres : 1 / leg_length(skeleton, feet));
   const std::size_t frames = positions.size() / joints, steps = frames - 1;
@@ -157,7 +159,7 @@ inline FootSkate foot_skate(const motion::Skeleton& skeleton, std::span<const mo
       for (const std::size_t j : feet) heights.push_back(positions[f * joints + j][1]);
     floor = motion::percentile(std::move(heights), options.floor_percentile);
   }
-  // An odd number of steps, so that the window lies evenly about its own.
+  // An odd number of steps, so that the window is centred on its step.
   const auto reach = static_cast<std::size_t>(std::max(0.0, std::round((options.seconds * rate - 1) / 2)));
 
   std::vector<char> slides(steps, 0), stands(steps, 0);
@@ -180,7 +182,7 @@ inline FootSkate foot_skate(const motion::Skeleton& skeleton, std::span<const mo
           static_cast<std::size_t>(std::count(stands.begin(), stands.end(), 1))};
 }
 
-/// The same of a motion, by forward kinematics.
+/// The same for a motion, by forward kinematics.
 inline FootSkate foot_skate(const motion::Motion& motion, const FootSkateOptions& options = {}) {
   return foot_skate(motion.skeleton, motion::joint_positions(motion), motion.rate, options);
 }

@@ -1,4 +1,4 @@
-// How far two sets of features lie apart, both taken for normal distributions: the FID.
+// Frechet distance between two sets of features (FID).
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -13,25 +13,25 @@
 
 namespace motiongan {
 
-/// A Frechet distance and what it was computed from.
+/// A Frechet distance and the sizes it was computed from.
 struct FrechetDistance {
-  double distance = 0;  ///< in squared units of the features; 0 for sets of the same mean and covariance
-  double means = 0;     ///< the part ||mu1 - mu2||^2 of it; the rest comes from the covariances
+  double distance = 0;  ///< in squared units of the features; 0 for equal means and covariances
+  double means = 0;     ///< its term ||mu1 - mu2||^2; the rest comes from the covariances
   std::size_t samples1 = 0, samples2 = 0, dimensions = 0;
 
-  /// Whether a set has no more samples than dimensions. Its covariance is then of low rank and the distance
-  /// too large, by an amount that depends on the number of samples (Chong & Forsyth 2020): compare such
-  /// distances only among sets of the same sizes.
+  /// Whether a set has no more samples than dimensions. Its covariance is then rank-deficient and the
+  /// distance too large, by an amount that depends on the number of samples (Chong & Forsyth 2020): compare
+  /// such distances only between sets of equal sizes.
   bool biased() const { return std::min(samples1, samples2) <= dimensions; }
 };
 
 namespace frechet_detail {
 
-/// a b^T, [rows of a, rows of b], of row-major `a` and `b` of `width` columns; only the lower half where
-/// `same` says that they are one.
+/// a b^T, [rows of a, rows of b], of row-major `a` and `b` with `width` columns. `same` states that a and b
+/// are one matrix; then only half of the product is computed.
 inline std::vector<double> times_transposed(std::span<const double> a, std::span<const double> b,
                                             std::size_t width, bool same = false) {
-  constexpr std::size_t tile = 4, depth = 256;  // 4 x 4 sums at a time, over pieces that stay in the cache
+  constexpr std::size_t tile = 4, depth = 256;  // 4 x 4 sums at a time, over blocks that fit the cache
   const std::size_t n = a.size() / width, m = b.size() / width;
   std::vector<double> out(n * m, 0), pa(tile * depth), pb((m + tile) * depth);
   for (std::size_t k0 = 0; k0 < width; k0 += depth) {
@@ -72,8 +72,8 @@ inline std::vector<double> transposed(std::span<const double> a, std::size_t wid
   return out;
 }
 
-/// F [rank, k] with F^T F = `covariance` [k, k]: Cholesky's with the largest pivot next, until what is left
-/// is nothing but rounding.
+/// F [rank, k] with F^T F = `covariance` [k, k]: pivoted Cholesky decomposition, stopped when the remainder
+/// is rounding error.
 inline std::vector<double> factor_of(std::vector<double> covariance, std::size_t k) {
   std::vector<double> out;
   std::vector<double> left(k);
@@ -101,7 +101,7 @@ inline std::vector<double> factor_of(std::vector<double> covariance, std::size_t
   return out;
 }
 
-/// A set's mean, the trace of its covariance S and F [r, k] with F^T F = S, r at most min(n, k).
+/// A set's mean [k], the trace of its covariance S, and F [r, k] with F^T F = S and r <= min(n, k).
 struct Moments {
   std::vector<double> mean, factor;
   double trace = 0;
@@ -109,7 +109,7 @@ struct Moments {
 
 inline Moments moments_of(std::span<const float> features, std::size_t k, const char* which) {
   require(k > 0 && features.size() % k == 0, "the ", which, " set has ", features.size(),
-          " numbers, expected rows of ", k, " features");
+          " values, expected rows of ", k, " features");
   const std::size_t n = features.size() / k;
   require(n >= 2, "the ", which, " set has ", n,
           " samples; a Frechet distance needs at least 2 of each (and more than ", k, " to be unbiased)");
@@ -124,7 +124,7 @@ inline Moments moments_of(std::span<const float> features, std::size_t k, const 
     for (std::size_t d = 0; d < k; ++d) {
       double& x = centred[i * k + d];
       require(std::isfinite(x), "sample ", i, " of the ", which, " set has the feature ", x,
-              ", expected finite numbers");
+              ", expected finite values");
       x = (x - out.mean[d]) * scale;
       out.trace += x * x;
     }
@@ -139,19 +139,19 @@ inline Moments moments_of(std::span<const float> features, std::size_t k, const 
 
 }  // namespace frechet_detail
 
-/// The Frechet distance between normal distributions that fit two sets of features, [n, dimensions] and
+/// The Frechet distance between normal distributions fitted to two sets of features, [n, dimensions] and
 /// [m, dimensions]:
 ///
 ///     ||mu1 - mu2||^2 + tr(S1 + S2 - 2 (S1 S2)^(1/2))
 ///
-/// (Dowson & Landau 1982; as FID in Heusel et al. 2017, eq. 6), S the covariances over n - 1. No unit of its
-/// own: it depends on what made the features, and distances of other features cannot be compared with it.
+/// (Dowson & Landau 1982; as FID in Heusel et al. 2017, eq. 6), where S is the covariance normalised by n -
+/// 1. It depends on the feature extractor: distances from different extractors are not comparable.
 ///
-/// With S = F^T F the trace of the root is the sum of the singular values of F1 F2^T, which holds for
-/// covariances of any rank; nothing is added to a diagonal. Everything in double precision on the host, of
-/// order (n + m) k^2 + k^3: with 1,024 features about 1 s for 1,000 and 8 s for 10,000 samples a side.
-/// Never below 0. Error if the sizes do not fit, for a set of fewer than 2 samples and for numbers that are
-/// not finite.
+/// With S = F^T F, the trace of the square root is the sum of the singular values of F1 F2^T, for covariances
+/// of any rank, so no term is added to the diagonal. Computed in double precision on the host in O((n + m)
+/// k^2 + k^3): with 1,024 features about 1 s for 1,000 and 8 s for 10,000 samples per set. Never negative.
+/// Throws Error if the sizes do not fit, for a set of fewer than 2 samples and for values that are not
+/// finite.
 inline FrechetDistance frechet_distance(std::span<const float> features1, std::span<const float> features2,
                                         std::size_t dimensions) {
   using frechet_detail::moments_of, frechet_detail::times_transposed;
@@ -165,7 +165,7 @@ inline FrechetDistance frechet_distance(std::span<const float> features1, std::s
     out.means += (one.mean[d] - two.mean[d]) * (one.mean[d] - two.mean[d]);
   double root = 0;
   if (!one.factor.empty() && !two.factor.empty()) {
-    // The fewer rows, the smaller the problem of eigenvalues.
+    // The factor with fewer rows gives the smaller eigenvalue problem.
     const bool in_order = one.factor.size() <= two.factor.size();
     const std::vector<double>&small = in_order ? one.factor : two.factor,
           &large = in_order ? two.factor : one.factor;

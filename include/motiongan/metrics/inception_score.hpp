@@ -1,4 +1,4 @@
-// The inception score of motion, by a ranker (Lin & Amer, eq. 7; SPEC 7).
+// Inception score of motion, from a ranker's scores (Lin & Amer, eq. 7).
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -9,14 +9,15 @@
 
 namespace motiongan {
 
-/// H(mean p) - mean H(p) in nats, p being the softmax of a sample's scores over K descriptions: 0 when all
-/// samples look alike or none looks like anything, at most log K when each is surely of one description and
-/// all descriptions come alike often. The exponential of it is what most papers call the inception score; the
-/// paper's figures are nats. `scores` is [n, K].
+/// H(mean p) - mean H(p) in nats (Lin & Amer, eq. 7), p being the softmax of a sample's scores over K
+/// descriptions. It is 0 if all samples have the same p, and at most log K, if each sample matches one
+/// description with certainty and all descriptions are equally frequent. Most papers report its exponential;
+/// Lin & Amer report nats. `scores` is [n, K], `descriptions` K. Throws Error if the sizes do not fit or
+/// there is no sample.
 inline double inception_score(std::span<const float> scores, std::size_t descriptions) {
-  require(descriptions > 0 && !scores.empty() && scores.size() % descriptions == 0, "an inception score of ",
+  require(descriptions > 0 && !scores.empty() && scores.size() % descriptions == 0, "found ",
           scores.size(), " scores over ", descriptions,
-          " descriptions, expected a row of scores each sample");
+          " descriptions, expected one score per sample and description, and at least one sample");
   const std::size_t samples = scores.size() / descriptions;
   std::vector<double> mean(descriptions, 0), p(descriptions);
   const auto entropy = [](const std::vector<double>& q) {

@@ -1,4 +1,4 @@
-// How jerkily joints move.
+// Mean jerk of joint positions, a measure of smoothness.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -8,14 +8,14 @@
 
 namespace motiongan {
 
-/// Mean magnitude of the third derivative of the joints' positions in the world, in metres per second cubed
-/// where `unit_metres` is the size of the file's unit (1: in that unit): mean over joints and frames of
-/// |p[t+3] - 3 p[t+2] + 3 p[t+1] - p[t]| * rate^3. Jerk as a measure of smoothness: Flash & Hogan 1985; in
-/// this form the "jitter" of Yi et al. 2021 (TransPose), who give hundreds of m/s^3.
+/// Mean magnitude of the third derivative of the joints' world positions, in m/s^3 if `unit_metres` is the
+/// file's unit in metres (1: in the file's unit per s^3): the mean over joints and frames of
+/// |p[t+3] - 3 p[t+2] + 3 p[t+1] - p[t]| * rate^3. Jerk measures smoothness (Flash & Hogan 1985); in this
+/// form it is the "jitter" of Yi et al. 2021 (TransPose), who report hundreds of m/s^3.
 ///
-/// It falls steeply with the rate (what is quicker than a few frames is not seen), and noise grows with its
-/// cube: compare motions of one rate. `positions` are [frames, joints]. Error if the sizes do not fit or for
-/// fewer than 4 frames.
+/// Compare motions of one rate: movements shorter than a few frames are missed, and noise grows with the cube
+/// of the rate. `positions` are [frames, joints], `rate` in frames per second. Throws Error if the sizes do
+/// not fit or for fewer than 4 frames.
 inline double mean_jerk(std::span<const motion::Vec3> positions, std::size_t joints, double rate,
                         double unit_metres = 1) {
   require(joints > 0 && positions.size() % joints == 0, "found ", positions.size(),
@@ -36,7 +36,7 @@ inline double mean_jerk(std::span<const motion::Vec3> positions, std::size_t joi
   return unit_metres * rate * rate * rate * sum / static_cast<double>(count);
 }
 
-/// The same of a motion's joints, by forward kinematics.
+/// The same for a motion, by forward kinematics.
 inline double mean_jerk(const motion::Motion& motion, double unit_metres = 1) {
   return mean_jerk(motion::joint_positions(motion), motion.skeleton.size(), motion.rate, unit_metres);
 }

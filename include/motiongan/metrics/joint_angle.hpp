@@ -1,4 +1,4 @@
-// How bent a body is: the angle between adjacent bones, as the second paper measures what it makes.
+// Joint angles: the mean angle between adjacent bones (Malek-Podjaski & Deligianni, Fig. 2).
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace motiongan {
 
-/// Which joints have a bone to them that has a length at rest (a millionth of the mean or more), [joints].
+/// Whether the bone that ends in each joint has a rest length of at least a millionth of the mean, [joints].
 inline std::vector<char> joints_with_bone(const motion::Skeleton& skeleton) {
   const std::vector<double> lengths = motion::bone_lengths(skeleton);
   double sum = 0;
@@ -22,14 +22,13 @@ inline std::vector<char> joints_with_bone(const motion::Skeleton& skeleton) {
   return out;
 }
 
-/// Two bones that meet, each called by the joint in which it ends.
+/// Two adjacent bones, each identified by the joint in which it ends.
 struct BonePair {
   std::size_t in = 0, out = 0;
 };
 
-/// All pairs of adjacent bones, in the order of the joints in which the second one ends. A bone of zero rest
-/// length is none (SPEC section 5): its two joints are one point, and the bones on both sides of it meet
-/// there.
+/// All pairs of adjacent bones, in the order of the joints in which the second one ends. Bones of zero rest
+/// length are skipped: their two joints coincide, and the bones on either side are adjacent.
 inline std::vector<BonePair> adjacent_bones(const motion::Skeleton& skeleton) {
   const std::vector<char> bone = joints_with_bone(skeleton);
   std::vector<BonePair> out;
@@ -43,16 +42,15 @@ inline std::vector<BonePair> adjacent_bones(const motion::Skeleton& skeleton) {
   return out;
 }
 
-/// Angle in degrees, 0..180, between two vectors; 0 (as if straight) if one of them is zero.
+/// Angle in degrees, 0..180, between two vectors; 0 if one of them is zero.
 inline double angle_between_degrees(const motion::Vec3& a, const motion::Vec3& b) {
-  // The arc cosine of the dot product of the unit vectors, in a form that keeps small angles.
+  // atan2 rather than the arc cosine of the dot product, which loses small angles to rounding.
   return motion::degrees(std::atan2(motion::length(motion::cross(a, b)), motion::dot(a, b)));
 }
 
-/// The angle between adjacent bones (the one into a joint and the one out of it: 0 is straight), in degrees,
-/// mean over adjacent_bones, of every frame of `positions` [frames, joints]: [frames] (SPEC section 7, the
-/// second paper's Fig. 2). Positions may be in any unit and any frame of reference. Error if the sizes do not
-/// fit or no two bones meet.
+/// Mean angle in degrees between adjacent bones (0: straight), over adjacent_bones(), for every frame of
+/// `positions` [frames, joints]: [frames] (Malek-Podjaski & Deligianni, Fig. 2). Positions may be in any unit
+/// and any frame of reference. Throws Error if the sizes do not fit or there are no adjacent bones.
 inline std::vector<double> mean_joint_angle(const motion::Skeleton& skeleton,
                                             std::span<const motion::Vec3> positions) {
   const std::size_t joints = skeleton.size();
@@ -60,7 +58,7 @@ inline std::vector<double> mean_joint_angle(const motion::Skeleton& skeleton,
           " positions, expected whole frames of ", joints, " joints");
   const std::vector<BonePair> pairs = adjacent_bones(skeleton);
   require(!pairs.empty(), "a skeleton of ", joints,
-          " joints has no two bones that meet, so it has no joint angle");
+          " joints has no adjacent bones, so it has no joint angle");
   const auto bone = [&](const motion::Vec3* pose, std::size_t j) {
     return motion::subtract(pose[j], pose[static_cast<std::size_t>(skeleton.joints[j].parent)]);
   };

@@ -1,4 +1,4 @@
-// A number over several seeds.
+// Mean and standard deviation over several values, such as seeds.
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -8,15 +8,15 @@
 
 namespace motiongan {
 
-/// Mean and sample standard deviation (n - 1; 0 for one value).
+/// Mean and sample standard deviation (`spread`, with n - 1; 0 for one value).
 struct MeanStd {
   std::size_t count = 0;
   double mean = 0, spread = 0;
 };
 
-/// Error for no values.
+/// Throws Error if there are no values.
 inline MeanStd mean_spread(std::span<const double> values) {
-  require(!values.empty(), "the mean of no values was asked for");
+  require(!values.empty(), "there are no values to average, expected at least one");
   const auto n = static_cast<double>(values.size());
   MeanStd out{values.size(), 0, 0};
   for (const double v : values) out.mean += v / n;

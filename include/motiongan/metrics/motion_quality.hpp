@@ -1,4 +1,4 @@
-// What can be said of a set of motions without a model: feet that slide, jerk, bones that stretch.
+// Quality measures of a set of motions that need no model: foot skating, jerk, bone-length error.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -12,19 +12,19 @@
 
 namespace motiongan {
 
-/// Measures of a set of motions, each step and each frame counting alike. Compare sets of one rate, and of
-/// motions about as long.
+/// Measures of a set of motions, averaged over all steps and frames. Compare sets of one rate and similar
+/// lengths.
 struct MotionQuality {
   std::size_t motions = 0, frames = 0;
-  std::optional<FootSkate> feet;  ///< not set: no joints are called feet
-  double jerk = 0;                ///< see mean_jerk; per second cubed in `length_unit`
+  std::optional<FootSkate> feet;  ///< unset if the skeleton has no feet (see find_feet)
+  double jerk = 0;                ///< see mean_jerk; in `length_unit` per second cubed
   double bone_error = 0;          ///< percent, see bone_length_error
-  std::string length_unit;        ///< "m"; "legs" where the file's unit is not known; "units" without feet
+  std::string length_unit;        ///< "m"; "legs" if the file's unit is unknown; "units" without feet
 };
 
-/// Of motions of one skeleton. Lengths are metres where `options.unit_metres` is given, else legs (taken for
-/// a metre by foot_skate too), else, where there are no feet to measure a leg by, the files' unit. Error for
-/// no motion, motions of fewer than 4 frames, and feet that are named in the options but are not there.
+/// Measures motions of one skeleton. Lengths are in metres if `options.unit_metres` is given, otherwise in
+/// leg lengths (which foot_skate takes to be 1 m), or in the files' unit if the skeleton has no feet. Throws
+/// Error without motions, for motions of fewer than 4 frames, and for feet in the options that do not exist.
 inline MotionQuality measure_quality(std::span<const motion::Motion> motions,
                                      const FootSkateOptions& options = {}) {
   require(!motions.empty(), "there is no motion to measure; expected at least one");

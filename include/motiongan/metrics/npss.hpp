@@ -1,4 +1,4 @@
-// Whether a predicted motion moves at the frequencies of the true one.
+// Normalised power spectrum similarity (NPSS) of predicted and true motion.
 #pragma once
 #include <cmath>
 #include <complex>
@@ -12,31 +12,31 @@
 
 namespace motiongan {
 
-/// Which power a coefficient of the Fourier transform has.
+/// How the power of a Fourier coefficient X is computed.
 enum class SpectralPower {
   magnitude,  ///< |X|^2, the paper's definition
-  real_part,  ///< (Re X)^2, which the paper's own code and those made after it compute; for their numbers
+  real_part,  ///< (Re X)^2, as in the paper's code and its derivatives; to reproduce their numbers
 };
 
 /// Normalised power spectrum similarity (Gopalakrishnan et al. 2019, A Neural Temporal Model for Human Motion
-/// Prediction, eq. 9-11) of predicted and true sequences, added up pair by pair: 0 where they have the same
-/// spectra, less is better. No unit; it grows with the frames of a sequence, so compare sequences of one
-/// length.
+/// Prediction, eq. 9-11) of predicted and true sequences, accumulated pair by pair. It is 0 for equal
+/// spectra, lower is better. It has no unit but grows with the length of the sequences, so compare sequences
+/// of one length.
 ///
-/// Of each dimension the power spectra over all frequencies 0 .. frames - 1 are divided by their sums; their
-/// difference is the earth mover's distance sum_w |cumulative true - cumulative predicted|; the mean over
+/// Each dimension's power spectra over the frequencies 0 .. frames - 1 are normalised to sum to 1 and
+/// compared by the earth mover's distance sum_w |cumulative true - cumulative predicted|; the mean over
 /// dimensions and sequences is weighted by the true power. A dimension whose mean is far from 0 has most of
-/// its power at frequency 0, and then hardly counts as moving, however it moves.
+/// its power at frequency 0, so its movement contributes little.
 class Npss {
  public:
   explicit Npss(SpectralPower power = SpectralPower::magnitude) : kind_(power) {}
 
-  /// Adds a pair of sequences [frames, width] of angles in radians (the power of other units is only scaled
-  /// alike). Error if the sizes do not fit.
+  /// Adds a pair of sequences [frames, width], usually of angles in radians (the unit cancels out). Throws
+  /// Error if the sizes do not fit.
   void add(std::span<const double> truth, std::span<const double> prediction, std::size_t frames) {
     require(frames > 0 && truth.size() == prediction.size() && truth.size() % frames == 0, "found ",
             truth.size(), " true and ", prediction.size(),
-            " predicted numbers, expected as many in both, of ", frames, " frames");
+            " predicted values, expected the same number in both, a multiple of ", frames, " frames");
     const std::size_t width = truth.size() / frames;
     turns_.resize(frames);
     for (std::size_t i = 0; i < frames; ++i)
@@ -45,7 +45,7 @@ class Npss {
       const std::vector<double> a = powers(truth, d, width), b = powers(prediction, d, width);
       double sum_a = 0, sum_b = 0, ahead = 0, distance = 0;
       for (std::size_t w = 0; w < frames; ++w) sum_a += a[w], sum_b += b[w];
-      if (!(sum_a > 0)) continue;  // it has no weight
+      if (!(sum_a > 0)) continue;  // its weight is 0
       for (std::size_t w = 0; w < frames; ++w) {
         ahead += a[w] / sum_a - (sum_b > 0 ? b[w] / sum_b : 0);
         distance += std::abs(ahead);
@@ -58,14 +58,14 @@ class Npss {
 
   std::size_t sequences() const { return sequences_; }
 
-  /// Error where no sequence was added. 0 if none of them has any power.
+  /// The NPSS of all pairs; 0 if the true sequences have no power. Throws Error if no pair was added.
   double value() const {
     require(sequences_ > 0, "no sequence was added; NPSS needs at least one pair of them");
     return weight_ > 0 ? weighted_ / weight_ : 0;
   }
 
  private:
-  /// Of one dimension, [frames], by the plain transform: sequences are short.
+  /// Power spectrum of one dimension, [frames], by a plain DFT: sequences are short.
   std::vector<double> powers(std::span<const double> values, std::size_t d, std::size_t width) const {
     const std::size_t frames = turns_.size();
     std::vector<double> out(frames);
@@ -84,8 +84,8 @@ class Npss {
   std::size_t sequences_ = 0;
 };
 
-/// A motion's Euler angles as NPSS and euler_errors take them: [frames, 3 * (joints - 1)] in radians, of all
-/// local rotations but that of `root`, inverted as in the motion-prediction papers' texts.
+/// A motion's Euler angles for NPSS, [frames, 3 * (joints - 1)] in radians: of all local rotations but that
+/// of `root`, inverted as in the motion-prediction papers' text files, as in euler_errors().
 inline std::vector<double> prediction_angles(const motion::Motion& motion, std::size_t root = 0) {
   motion::check_motion(motion);
   std::vector<double> out;

@@ -1,5 +1,4 @@
-// What can be wrong with motion as positions: bones that stretch, a jump where what was made begins, a
-// character that does not get anywhere.
+// Metrics of motion as joint positions: bone-length error, jump at the seam, distance travelled.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -14,13 +13,10 @@
 
 namespace motiongan {
 
-/// Lengths in these functions' results are in the files' unit times `unit_metres`: 1 gives the file's unit;
-/// the size of that unit in metres (CMU 0.05644, Bandai-Namco 0.01) gives metres.
-///
-/// How much bones differ from their lengths, in percent of those: 100 | |bone| - length | / length, mean over
-/// the bones and frames of `positions` [frames, joints]. The lengths are the skeleton's rest lengths, or,
-/// where `reference` [joints] is given (such as the prior's first frame), those in it. Bones of zero rest
-/// length are skipped. Error if sizes do not fit or there is nothing to compare.
+/// Bone-length error in percent: 100 | |bone| - length | / length, averaged over bones and over the frames of
+/// `positions` [frames, joints]. The lengths are those of the skeleton's rest pose or, if given, of the frame
+/// `reference` [joints], such as the prior's first frame. Bones of zero rest length are skipped. Throws Error
+/// if the sizes do not fit or there is no bone to compare.
 inline double bone_length_error(const motion::Skeleton& skeleton, std::span<const motion::Vec3> positions,
                                 std::span<const motion::Vec3> reference = {}) {
   const std::size_t joints = skeleton.size();
@@ -47,18 +43,21 @@ inline double bone_length_error(const motion::Skeleton& skeleton, std::span<cons
   return 100 * sum / static_cast<double>(count);
 }
 
-/// How far joints move from one frame to the next, mean over joints.
+/// Distance that joints move from one frame to the next, averaged over joints.
+///
+/// Here and below, lengths are in the file's unit times `unit_metres`: 1 keeps the file's unit, the unit's
+/// size in metres (CMU 0.05644, Bandai-Namco 0.01) gives metres.
 struct FrameStep {
-  double world = 0;  ///< as they are
-  double body = 0;   ///< after the root's own step is taken off
+  double world = 0;  ///< in world space
+  double body = 0;   ///< relative to the root's step
 };
 
-/// The step from one frame [joints] to the next [joints]; joint 0 is the root. Taken from the last frame of
-/// the prior to the first one made it is the jump at the seam. Error if the sizes differ.
+/// The step from one frame [joints] to the next [joints]; joint 0 is the root. Throws Error if the sizes
+/// differ or are 0.
 inline FrameStep frame_step(std::span<const motion::Vec3> before, std::span<const motion::Vec3> after,
                             double unit_metres = 1) {
   require(!before.empty() && before.size() == after.size(), "found frames of ", before.size(), " and ",
-          after.size(), " joints, expected as many in both");
+          after.size(), " joints, expected the same number in both");
   const motion::Vec3 root = motion::subtract(after[0], before[0]);
   FrameStep out;
   for (std::size_t j = 0; j < before.size(); ++j) {
@@ -70,15 +69,15 @@ inline FrameStep frame_step(std::span<const motion::Vec3> before, std::span<cons
   return {out.world * factor, out.body * factor};
 }
 
-/// The jump where what was made begins: frame_step from the prior's last frame to the first one made, each
-/// [joints]. A real motion makes a median_step there.
+/// The jump at the seam: frame_step() from the prior's last frame to the first generated one, each [joints].
+/// In real motion it is about a median_step().
 inline FrameStep seam_jump(std::span<const motion::Vec3> last_prior_frame,
                            std::span<const motion::Vec3> first_made_frame, double unit_metres = 1) {
   return frame_step(last_prior_frame, first_made_frame, unit_metres);
 }
 
-/// The median of the steps between the frames of `positions` [frames, joints], each of the two kinds by
-/// itself (the lower of the two in the middle). Error if there are no two frames.
+/// Medians of the steps between the frames of `positions` [frames, joints], separately for world and body; of
+/// two middle values the lower. Throws Error for fewer than two frames.
 inline FrameStep median_step(std::span<const motion::Vec3> positions, std::size_t joints,
                              double unit_metres = 1) {
   require(joints > 0 && positions.size() % joints == 0 && positions.size() >= 2 * joints, "found ",
@@ -98,13 +97,13 @@ inline FrameStep median_step(std::span<const motion::Vec3> positions, std::size_
   return {median(world), median(body)};
 }
 
-/// How far a root gets over the ground (x and z).
+/// Distance covered by the root over the ground (x and z).
 struct Distance {
-  double path = 0;  ///< every step added up
-  double net = 0;   ///< from the first place to the last, straight
+  double path = 0;  ///< sum of all steps
+  double net = 0;   ///< straight line from the first to the last position
 };
 
-/// The way of joint 0 in `positions` [frames, joints]. Error if the sizes do not fit.
+/// Distance travelled by joint 0 in `positions` [frames, joints]. Throws Error if the sizes do not fit.
 inline Distance distance_travelled(std::span<const motion::Vec3> positions, std::size_t joints,
                                    double unit_metres = 1) {
   require(joints > 0 && positions.size() % joints == 0, "found ", positions.size(),

@@ -1,4 +1,4 @@
-// How often a ranker finds the right description of a motion among K (Lin & Amer, Tables 1 and 2; SPEC 7).
+// Retrieval accuracy of a ranker: R@k among K descriptions (Lin & Amer, Tables 1 and 2).
 #pragma once
 #include <algorithm>
 #include <array>
@@ -14,33 +14,33 @@ namespace motiongan {
 /// The k of R@k.
 inline constexpr std::array<std::size_t, 4> recall_ranks{1, 3, 5, 10};
 
-/// R@1, 3, 5, 10: per cent of samples whose right description is among the k best.
+/// R@1, 3, 5, 10: percentage of samples whose right description is among the k best.
 using Recall = std::array<double, recall_ranks.size()>;
 
-/// What guessing comes to: 100 k / K, at most 100.
+/// R@k of random guessing: 100 k / K, at most 100. Throws Error if K is 0.
 inline Recall random_recall(std::size_t descriptions) {
-  require(descriptions > 0, "random recall among 0 descriptions");
+  require(descriptions > 0, "descriptions is 0, expected at least 1");
   Recall out{};
   for (std::size_t i = 0; i < out.size(); ++i)
     out[i] = std::min(100.0, 100 * static_cast<double>(recall_ranks[i]) / static_cast<double>(descriptions));
   return out;
 }
 
-/// R@k of all samples, and of those of each description.
+/// R@k over all samples and per description.
 struct Retrieval {
   struct Part {
-    std::size_t description = 0;  ///< its number
+    std::size_t description = 0;  ///< index of the description
     std::size_t samples = 0;
     Recall recall{};
-    double mean_rank = 0;  ///< of the right description, from 1
+    double mean_rank = 0;  ///< mean rank of the right description, from 1
   };
   std::size_t descriptions = 0;  ///< K
   std::size_t samples = 0;
   Recall recall{};
   double mean_rank = 0;
-  std::vector<Part> parts = {};  ///< in the order of the descriptions; those without a sample are left out
+  std::vector<Part> parts = {};  ///< by description; descriptions without samples are omitted
 
-  /// Mean of the parts' recall: every description counts alike, however many samples it has.
+  /// Recall averaged over descriptions, regardless of their numbers of samples.
   Recall by_description() const {
     Recall out{};
     for (const Part& part : parts)
@@ -50,11 +50,12 @@ struct Retrieval {
   }
 };
 
-/// What always ranking description 0 first, then 1 and so on comes to, whatever the motion: where
-/// descriptions stand in the order of how common they are, the best that can be done blindly. Far above
-/// chance if a few descriptions have most of the samples.
+/// R@k of always ranking the descriptions 0, 1, 2, ... in that order, whatever the motion: with descriptions
+/// sorted by frequency, the best result without looking at the motion. It is far above chance if few
+/// descriptions have most of the samples. `right` lists each sample's right descriptions. Throws Error
+/// without samples.
 inline Recall blind_recall(std::span<const std::vector<std::size_t>> right) {
-  require(!right.empty(), "there is no sample to rank descriptions for");
+  require(!right.empty(), "there are no samples, expected at least one");
   Recall out{};
   for (const std::vector<std::size_t>& of : right)
     for (std::size_t i = 0; i < out.size(); ++i)
@@ -63,10 +64,10 @@ inline Recall blind_recall(std::span<const std::vector<std::size_t>> right) {
   return out;
 }
 
-/// The rank of description `d`, from 1, among those that are not `right` too. Equal scores count against it:
-/// a ranker that cannot tell two descriptions apart has not found either.
+/// The rank of description `d`, from 1, among the descriptions not in `right`. Ties count against it: a
+/// ranker that cannot distinguish two descriptions has found neither. Throws Error if `d` is out of range.
 inline std::size_t rank_of(std::span<const float> scores, std::size_t d, std::span<const std::size_t> right) {
-  require(d < scores.size(), "description ", d, " of ", scores.size());
+  require(d < scores.size(), "description ", d, " is out of range, there are ", scores.size());
   std::size_t rank = 1;
   for (std::size_t other = 0; other < scores.size(); ++other)
     if (other != d && std::find(right.begin(), right.end(), other) == right.end() &&
@@ -75,13 +76,15 @@ inline std::size_t rank_of(std::span<const float> scores, std::size_t d, std::sp
   return rank;
 }
 
-/// Of `scores` [n, K], where sample s is rightly described by any of `right[s]`: its rank is that of the best
-/// of them. In the parts it counts for each of them, with that one's rank. Every sample counts alike.
+/// Retrieval results from `scores` [n, K] with K = `descriptions`. Any of `right[s]` describes sample s; its
+/// rank is that of the best-ranked of them. In `parts` the sample counts for each of them, with that
+/// description's rank. Throws Error if the sizes do not fit, without samples, and for a sample without a
+/// right description.
 inline Retrieval retrieval(std::span<const float> scores, std::size_t descriptions,
                            std::span<const std::vector<std::size_t>> right) {
   require(descriptions > 0 && scores.size() == right.size() * descriptions, "found ", scores.size(),
           " scores of ", right.size(), " samples, expected ", descriptions, " each");
-  require(!right.empty(), "there is no sample to rank descriptions for");
+  require(!right.empty(), "there are no samples, expected at least one");
   Retrieval out{.descriptions = descriptions, .samples = right.size()};
   std::vector<Retrieval::Part> parts(descriptions);
   const auto add = [](Recall& recall, std::size_t rank) {

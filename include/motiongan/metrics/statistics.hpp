@@ -1,5 +1,5 @@
-// Numbers that say whether generated motion moves like real motion: how far joints turn and how fast, whether
-// they leave the range that real clips show, how fast the body travels and how quickly the pose changes.
+// Statistics that compare generated with real motion: joint angles and speeds, values outside the real range,
+// root speed, and the mean frequency of the pose.
 #pragma once
 #include "motiongan/metrics/statistics_comparison.hpp"
 #include "motiongan/metrics/statistics_measure.hpp"

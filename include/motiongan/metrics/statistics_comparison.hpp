@@ -1,4 +1,4 @@
-// Statistics of generated motion beside those of real motion, as a table for people and as CSV for tools.
+// Compares statistics of generated and real motion, and prints them as a table or CSV.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -13,27 +13,28 @@
 
 namespace motiongan::motion {
 
-/// One joint of two sets. Angles in degrees, speeds in degrees per second. A ratio is generated over real and
-/// NaN where the real joint hardly moves (spread under 0.1 degrees, speed under 0.1 degrees per second).
+/// One joint in two sets. Angles in degrees, speeds in degrees per second. Ratios are generated / real, and
+/// NaN if the real joint hardly moves (spread below 0.1 degrees, speed below 0.1 degrees per second).
 struct JointComparison {
   JointStatistics generated, real;
   double mean_difference = 0;  ///< distance between the mean exponential maps
   double spread_ratio = 0, speed_ratio = 0, speed_p95_ratio = 0;
-  double outside = 0;  ///< share of generated frames where the joint is outside the real range
+  double outside = 0;  ///< fraction of generated frames with the joint outside the real range
 };
 
+/// Two sets compared, over all joints.
 struct StatisticsComparison {
-  MotionStatistics generated, real;  ///< without their poses
+  MotionStatistics generated, real;  ///< without `poses`
   std::vector<JointComparison> joints;
-  double margin = 0;               ///< by which the real range was widened, as a share of it
-  double median_spread_ratio = 0;  ///< over the joints that have one
+  double margin = 0;               ///< widening of the real range, as a fraction of its width
+  double median_spread_ratio = 0;  ///< over the joints with a ratio
   double mean_speed_ratio = 0;     ///< mean speed of all joints, generated over real
-  double values_outside = 0;       ///< share of all numbers of all generated poses outside the real range
-  double frames_outside = 0;       ///< share of generated frames with at least one such number
+  double values_outside = 0;       ///< fraction of all generated pose values outside the real range
+  double frames_outside = 0;       ///< fraction of generated frames with at least one such value
 };
 
-/// Compares two measured sets. Every number of a pose has the range that the real set shows; it is widened at
-/// both ends by `margin` times its width, and by half a degree at least. Error if the joints differ, or if
+/// Compares two sets measured by measure(). The range of each pose value is that of the real set, widened at
+/// each end by `margin` times its width and by at least half a degree. Throws Error if the joints differ or
 /// `margin` is negative.
 inline StatisticsComparison compare(const MotionStatistics& generated, const MotionStatistics& real,
                                     double margin = 0.05) {
@@ -92,7 +93,7 @@ inline StatisticsComparison compare(const MotionStatistics& generated, const Mot
 
 namespace statistics_detail {
 
-/// `value` with `decimals` decimals; `missing` where it is not a number.
+/// `value` with `decimals` decimals; `missing` if it is not finite.
 inline std::string decimal(double value, int decimals, const char* missing = "-") {
   if (!std::isfinite(value)) return missing;
   char text[64];
@@ -111,8 +112,8 @@ inline std::string pad_right(const std::string& text, std::size_t width) {
 
 }  // namespace statistics_detail
 
-/// Aligned text: a line per joint (generated, real and their ratio), then the summary. `unit` is the clips'
-/// unit of length.
+/// A text table: one line per joint (generated, real and their ratio), then a summary. `unit` names the
+/// clips' unit of length.
 inline std::string to_table(const StatisticsComparison& c, const std::string& unit = "units") {
   using statistics_detail::decimal, statistics_detail::pad_left, statistics_detail::pad_right;
   std::size_t name_width = 5;
@@ -144,28 +145,28 @@ inline std::string to_table(const StatisticsComparison& c, const std::string& un
   line("mean speed ratio", decimal(c.mean_speed_ratio, 3));
   line("pose values outside real range", decimal(100 * c.values_outside, 2) + "%");
   line("frames with any value outside", decimal(100 * c.frames_outside, 2) + "%");
-  out += "  (range widened by " + decimal(100 * c.margin, 0) + "% at either end, by 0.5 deg at least)\n";
+  out += "  (range widened by " + decimal(100 * c.margin, 0) + "% at each end, by at least 0.5 deg)\n";
   pair(("root speed (" + unit + "/s)").c_str(), decimal(c.generated.root_speed, 2),
        decimal(c.real.root_speed, 2));
   pair("root speed, 95th percentile", decimal(c.generated.root_speed_p95, 2),
        decimal(c.real.root_speed_p95, 2));
   pair("mean frequency of the pose (Hz)", decimal(c.generated.frequency, 3), decimal(c.real.frequency, 3));
-  pair(("lowest point, least (" + unit + ")").c_str(), decimal(c.generated.lowest, 2),
+  pair(("lowest point, minimum (" + unit + ")").c_str(), decimal(c.generated.lowest, 2),
        decimal(c.real.lowest, 2));
   pair(("lowest point, mean (" + unit + ")").c_str(), decimal(c.generated.mean_low, 2),
        decimal(c.real.mean_low, 2));
-  pair(("lowest point, greatest (" + unit + ")").c_str(), decimal(c.generated.highest_low, 2),
+  pair(("lowest point, maximum (" + unit + ")").c_str(), decimal(c.generated.highest_low, 2),
        decimal(c.real.highest_low, 2));
   return out;
 }
 
-/// One line per joint and a header; degrees and degrees per second. A ratio that does not exist is empty.
+/// CSV with a header and one line per joint, in degrees and degrees per second. Undefined ratios are empty.
 inline std::string to_csv(const StatisticsComparison& c) {
   std::string out =
       "joint,mean_difference,spread,spread_real,spread_ratio,angle,angle_real,angle_spread,angle_spread_real,"
       "speed,speed_real,speed_ratio,speed_p95,speed_p95_real,speed_p95_ratio,outside\n";
   for (const JointComparison& j : c.joints) {
-    // A name with a comma or a quote is quoted, its quotes doubled.
+    // A name with a comma, quote or newline is quoted, and its quotes are doubled.
     std::string name = j.real.name;
     if (name.find_first_of(",\"\n") != std::string::npos) {
       std::string quoted = "\"";

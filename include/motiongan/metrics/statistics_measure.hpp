@@ -1,5 +1,4 @@
-// Measures how clips move: how far joints turn and how fast, where the body stands, how fast it travels and
-// how quickly the pose changes.
+// Motion statistics of a set of clips: joint angles and speeds, root speed, mean frequency, lowest point.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -19,8 +18,8 @@ namespace motiongan::motion {
 /// One joint over all frames of all clips. Angles in degrees.
 struct JointStatistics {
   std::string name;
-  Vec3 mean{}, spread{};               ///< of the exponential map's three numbers (unwrapped over time)
-  Vec3 low{}, high{};                  ///< their least and greatest values
+  Vec3 mean{}, spread{};               ///< of the exponential map's components, unwrapped over time
+  Vec3 low{}, high{};                  ///< their minima and maxima
   double angle = 0, angle_spread = 0;  ///< mean and standard deviation of the rotation angle, 0 .. 180
   double speed = 0, speed_p95 = 0;     ///< angular speed, degrees per second: mean and 95th percentile
 
@@ -28,19 +27,19 @@ struct JointStatistics {
   double total_spread() const { return length(spread) / std::sqrt(3.0); }
 };
 
-/// What measure() finds in a set of clips. Lengths are in the clips' own unit.
+/// Statistics of a set of clips. Lengths are in the clips' unit.
 struct MotionStatistics {
   std::size_t clips = 0, frames = 0;
   double seconds = 0;                         ///< sum over clips of (frames - 1) / rate
-  double root_speed = 0, root_speed_p95 = 0;  ///< of the joint that travels (moving_root), units per second
+  double root_speed = 0, root_speed_p95 = 0;  ///< of the moving root, units per second
   double frequency = 0;                       ///< power-weighted mean frequency of the pose, Hz
   double lowest = 0, highest_low = 0,
-         mean_low = 0;  ///< least, greatest and mean height of the body's lowest point
+         mean_low = 0;  ///< minimum, maximum and mean height of the body's lowest point
   std::vector<JointStatistics> joints;
   std::vector<double> poses;  ///< [frames, 3 * joints] exponential maps in degrees, clip after clip
 };
 
-/// Percentile `share` (0 .. 1) of the values, linear between neighbours; 0 if there are none.
+/// Percentile `share` (0 .. 1) of the values, with linear interpolation; 0 if there are none.
 inline double percentile(std::vector<double> values, double share) {
   if (values.empty()) return 0;
   std::sort(values.begin(), values.end());
@@ -50,9 +49,10 @@ inline double percentile(std::vector<double> values, double share) {
   return values[below] + (values[above] - values[below]) * (at - static_cast<double>(below));
 }
 
-/// Power of the channels at each frequency, summed into (sum of power * frequency, sum of power). The values
-/// [frames, width] are cut into pieces of at most 512 frames, so that the plain transform stays cheap; each
-/// piece's mean is taken off. The lowest frequency seen is rate / (frames of the piece).
+/// Spectral moments of `values` [frames, width] over all channels: (sum of power * frequency, sum of power),
+/// in Hz for a rate in frames per second. The values are split into pieces of at most 512 frames, which keeps
+/// a plain DFT cheap, and each piece's mean is subtracted. The lowest frequency is rate / (frames of the
+/// piece).
 inline std::pair<double, double> spectral_moments(std::span<const double> values, std::size_t width,
                                                   double rate) {
   constexpr std::size_t longest = 512;
@@ -76,7 +76,7 @@ inline std::pair<double, double> spectral_moments(std::span<const double> values
           re += (x[i] - mean) * cosine[at];
           im += (x[i] - mean) * sine[at];
         }
-        // The frequency n / 2 stands for itself alone, the others for their mirror images too.
+        // All frequencies but n / 2 represent a conjugate pair.
         const double p = (re * re + im * im) * (2 * k == n ? 1 : 2);
         weighted += p * static_cast<double>(k) * rate / static_cast<double>(n);
         power += p;
@@ -86,9 +86,9 @@ inline std::pair<double, double> spectral_moments(std::span<const double> values
   return {weighted, power};
 }
 
-/// Statistics of clips of one skeleton. Compare sets of one rate: speeds of fast movement shrink as the rate
-/// falls. Error without clips, with fewer than two frames in a clip, or with joints that differ between
-/// clips.
+/// Measures clips of one skeleton. Compare sets of one rate: a lower rate underestimates the speed of fast
+/// movements. Throws Error without clips, for a clip of fewer than two frames, and if the joints differ
+/// between clips.
 inline MotionStatistics measure(std::span<const Motion> motions) {
   require(!motions.empty(), "there is no motion to measure; expected at least one clip");
   const Skeleton& skeleton = motions.front().skeleton;

@@ -1,4 +1,4 @@
-// Eigenvalues of symmetric matrices on the host, in double precision: for metrics of feature sets.
+// Eigenvalues of symmetric matrices, on the host in double precision.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -13,18 +13,17 @@ namespace motiongan {
 
 namespace eigenvalues_detail {
 
-/// Householder reduction: the diagonal and what lies below it, [n] each (off[0] is not used), of a
-/// tridiagonal matrix with the eigenvalues of `a` [n, n]. Both halves of `a` are kept up to date, so that all
-/// work runs along rows.
+/// Householder reduction: the diagonal and subdiagonal, [n] each (off[0] is unused), of a tridiagonal matrix
+/// with the eigenvalues of `a` [n, n]. Both triangles of `a` are updated, so that all loops run along rows.
 inline std::pair<std::vector<double>, std::vector<double>> tridiagonal(std::vector<double> a, std::size_t n) {
   std::vector<double> diagonal(n), off(n, 0), v(n), p(n);
   for (std::size_t last = n; last-- > 1;) {
-    // Row `last` is reduced to its diagonal and one number beside it; what is left is [last, last].
+    // Row `last` is reduced to its diagonal and one off-diagonal entry; [last, last] remains.
     double* const row = &a[last * n];
     diagonal[last] = row[last];
     double largest = 0, squares = 0;
     for (std::size_t i = 0; i < last; ++i) largest = std::max(largest, std::abs(row[i]));
-    if (largest == 0) continue;  // reduced already
+    if (largest == 0) continue;  // already reduced
     for (std::size_t i = 0; i < last; ++i) {
       v[i] = row[i] / largest;
       squares += v[i] * v[i];
@@ -58,15 +57,15 @@ inline std::pair<std::vector<double>, std::vector<double>> tridiagonal(std::vect
 
 }  // namespace eigenvalues_detail
 
-/// Eigenvalues, ascending, of a symmetric matrix [n, n], of which both halves are given: Householder
-/// reduction to a tridiagonal matrix, then the implicit QL method with Wilkinson's shift (Golub & Van Loan,
-/// Matrix Computations, 8.3). Their errors are about 1e-15 of the largest one. Takes time of order n^3: about
-/// a second for n = 1024. Error if the size does not fit or a number is not finite.
+/// Eigenvalues, ascending, of a symmetric matrix [n, n], given in full: Householder reduction to a
+/// tridiagonal matrix, then the implicit QL method with Wilkinson's shift (Golub & Van Loan, Matrix
+/// Computations, 8.3). Errors are about 1e-15 of the largest eigenvalue. O(n^3): about a second for n = 1024.
+/// Throws Error if the size does not fit, a value is not finite, or the iteration does not converge.
 inline std::vector<double> symmetric_eigenvalues(const std::vector<double>& matrix, std::size_t n) {
   require(n > 0 && matrix.size() == n * n, "found ", matrix.size(),
-          " numbers of a symmetric matrix, expected ", n, " x ", n, ", and at least one");
+          " values of a symmetric matrix, expected ", n, " x ", n, ", and at least one");
   for (const double x : matrix)
-    require(std::isfinite(x), "a symmetric matrix holds ", x, ", expected finite numbers");
+    require(std::isfinite(x), "a symmetric matrix holds ", x, ", expected finite values");
   auto [d, e] = eigenvalues_detail::tridiagonal(matrix, n);
   e.erase(e.begin());  // e[i] is now between d[i] and d[i + 1]
   e.push_back(0);
@@ -74,13 +73,13 @@ inline std::vector<double> symmetric_eigenvalues(const std::vector<double>& matr
   for (std::size_t i = 0; i < n; ++i) size = std::max(size, std::abs(d[i]) + std::abs(e[i]));
   for (std::size_t first = 0; first < n; ++first) {
     for (int sweeps = 0;; ++sweeps) {
-      std::size_t end = first;  // of the block that begins with `first`
+      std::size_t end = first;  // last index of the unreduced block that starts at `first`
       while (end + 1 < n &&
              std::abs(e[end]) > std::numeric_limits<double>::epsilon() *
                                     std::max(std::abs(d[end]) + std::abs(d[end + 1]), 1e-3 * size))
         ++end;
       if (end == first) break;
-      require(sweeps < 100, "the eigenvalues of a symmetric matrix of size ", n, " were not found in ",
+      require(sweeps < 100, "the eigenvalues of a symmetric matrix of size ", n, " did not converge in ",
               sweeps, " sweeps");
       const double g0 = (d[first + 1] - d[first]) / (2 * e[first]);
       const double root = std::hypot(g0, 1.0);
@@ -91,7 +90,7 @@ inline std::vector<double> symmetric_eigenvalues(const std::vector<double>& matr
         const double f = sine * e[i], b = cosine * e[i];
         const double r = std::hypot(f, g);
         e[i + 1] = r;
-        if (r == 0) {  // the block falls apart here
+        if (r == 0) {  // the block splits here
           d[i + 1] -= p;
           e[end] = 0;
           split = true;

@@ -3,10 +3,10 @@
 #pragma once
 #include <variant>
 
+#include "motiongan/core/fields.hpp"
 #include "motiongan/core/random.hpp"
 #include "motiongan/data/position_format_json.hpp"
-#include "motiongan/io/safetensors.hpp"
-#include "motiongan/nn/state_dict.hpp"
+#include "motiongan/models/model_file.hpp"
 #include "motiongan/networks/attention_generator.hpp"
 #include "motiongan/networks/lstm_baseline.hpp"
 #include "motiongan/ops/cross_entropy.hpp"
@@ -18,6 +18,9 @@ enum class ActionGenerator {
   attention,  ///< a second at once, by convolutions and self-attention, trained against a critic
   lstm        ///< the paper's baseline: frame by frame, trained to copy
 };
+constexpr NameTable<ActionGenerator, 2> enum_names(ActionGenerator) {
+  return {{{ActionGenerator::attention, "attention"}, {ActionGenerator::lstm, "lstm"}}};
+}
 
 struct ActionGanOptions {
   ActionGenerator generator = ActionGenerator::attention;
@@ -25,6 +28,20 @@ struct ActionGanOptions {
   std::size_t noise_dim = 0;  ///< numbers of noise beside the class; the paper has none; not for the baseline
   bool attention = true;      ///< of generator, critic and classifier
   std::uint64_t seed = 1;     ///< of the first weights
+
+  void list_fields(FieldList& list) {
+    list.add(generator, {.key = "generator",
+                         .help = "attention: a second at once, trained against a critic; lstm: the paper's "
+                                 "baseline",
+                         .option = "--model",
+                         .saved = false});  // it is the kind of the file
+    list.add(hidden, {.key = "hidden", .help = "width of the networks", .range = Range::between(1, 65536)});
+    list.add(attention, {.key = "attention", .help = "self-attention in all networks"});
+    list.add(noise_dim, {.key = "noise_dim",
+                         .help = "numbers of noise next to the class; the paper: 0",
+                         .range = Range::between(0, 65536),
+                         .option = "--noise"});
+  }
 };
 
 /// Goes on from one second of motion to the next, of a given class.
@@ -33,7 +50,7 @@ class ActionGan {
   ActionGan(Context context, motion::PositionFormat format, const ActionGanOptions& options)
       : context_(std::move(context)),
         format_(std::move(format)),
-        options_(options),
+        options_((check_options(options), options)),
         generator_(make_generator(context_, format_, options)) {}
 
   const Context& context() const { return context_; }
@@ -58,7 +75,7 @@ class ActionGan {
 
   /// The T frames [T, B, dof] that follow a normalised prior [T, B, dof] of class [B, Y] (one-hot); `key`
   /// names the noise where the model has some.
-  Var make(const Var& prior, const Var& classes, const RandomKey& key = {}) const {
+  Var forward(const Var& prior, const Var& classes, const RandomKey& key = {}) const {
     if (is_baseline()) return baseline()(prior, classes, format_.frames);
     return generator()(prior, classes, noise(prior.dim(1), key));
   }
@@ -72,70 +89,25 @@ class ActionGan {
 
   /// Writes the weights (PyTorch's names and shapes) and everything that is needed to generate, as one
   /// safetensors file.
-  void save(const std::filesystem::path& path) {
-    io::SafeTensors file;
-    describe(file);
-    io::save_parameters(named_parameters(*this), file);
-    file.write(path);
-  }
+  void save(const std::filesystem::path& path) { save_model(*this, path); }
 
-  /// A model that save() wrote, or the generator of a run's checkpoint. Throws, naming the file and what is
-  /// wrong, for any other.
+  /// A model that save() wrote, or the generator of a run's checkpoint. Throws Error, naming the file and what
+  /// is wrong with it, for any other.
   static ActionGan load(const Context& context, const std::filesystem::path& path) {
-    const io::SafeTensors file = io::SafeTensors::read(path);
-    ActionGan model = from_description(context, file, path.string());
-    const bool is_checkpoint = file.metadata.contains("iteration");
-    io::load_parameters(named_parameters(model), file, path.string(), is_checkpoint ? "generator." : "");
-    return model;
+    return load_model<ActionGan>(context, path);
   }
 
-  /// Whether a file's metadata say that it holds a model of this kind.
-  static bool describes(const io::SafeTensors& file) {
-    const auto found = file.metadata.find("motiongan_model");
-    return found != file.metadata.end() && (found->second == attention_name || found->second == lstm_name);
+  // What model_file.hpp needs.
+  using Options = ActionGanOptions;
+  using Format = motion::PositionFormat;
+  static constexpr NameTable<ActionGenerator, 2> file_kinds{
+      {{ActionGenerator::attention, "attention_generator"}, {ActionGenerator::lstm, "lstm_baseline"}}};
+  static constexpr const char* part_name = "generator";
+  static ActionGenerator& kind_of(ActionGanOptions& options) { return options.generator; }
+  static std::string write_format(const Format& format) { return io::to_text(format); }
+  static Format read_format(const std::string& text, const std::string& where) {
+    return io::position_format_from_text(text, where);
   }
-
-  /// Adds the metadata of a model file: which model it is, its options and its format.
-  void describe(io::SafeTensors& file) const {
-    file.metadata["motiongan_model"] = is_baseline() ? lstm_name : attention_name;
-    nlohmann::json options{{"hidden", options_.hidden}};
-    if (!is_baseline()) {
-      options["noise_dim"] = options_.noise_dim;
-      options["attention"] = options_.attention;
-    }
-    file.metadata["options"] = options.dump();
-    file.metadata["format"] = io::to_json(format_).dump();
-  }
-
-  /// A model, with fresh weights, as a file's metadata describe it.
-  static ActionGan from_description(const Context& context, const io::SafeTensors& file,
-                                       const std::string& where) {
-    require(file.metadata.contains("motiongan_model"), where,
-            ": not a motiongan model (no \"motiongan_model\" in its metadata)");
-    const std::string& name = file.metadata.at("motiongan_model");
-    require(describes(file), where, ": holds a model called \"", name, "\", expected ", attention_name,
-            " or ", lstm_name);
-    try {
-      const auto options = nlohmann::json::parse(file.metadata.at("options"));
-      ActionGanOptions read;
-      read.generator = name == lstm_name ? ActionGenerator::lstm : ActionGenerator::attention;
-      read.hidden = options.at("hidden").get<std::size_t>();
-      if (read.generator == ActionGenerator::attention) {
-        read.noise_dim = options.at("noise_dim").get<std::size_t>();
-        read.attention = options.at("attention").get<bool>();
-      }
-      require(read.hidden > 0 && read.hidden <= 65536 && read.noise_dim <= 65536, "hidden ", read.hidden,
-              " or noise_dim ", read.noise_dim, " is out of range");
-      return ActionGan(
-          context, io::position_format_from_json(nlohmann::json::parse(file.metadata.at("format"))), read);
-    } catch (const Error& error) {
-      throw Error(where, ": ", error.what());
-    } catch (const std::exception& error) {  // nlohmann's own, and missing keys
-      throw Error(where, ": the model's metadata cannot be read: ", error.what());
-    }
-  }
-
-  static constexpr const char *attention_name = "attention_generator", *lstm_name = "lstm_baseline";
 
  private:
   using Network = std::variant<AttentionGenerator, LstmBaseline>;

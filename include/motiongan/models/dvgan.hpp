@@ -1,12 +1,12 @@
 // DVGAN as its user sees it: a generator, and the format that turns its numbers into motion. One file holds
 // both.
 #pragma once
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <variant>
 
+#include "motiongan/core/fields.hpp"
 #include "motiongan/data/motion_format_json.hpp"
-#include "motiongan/nn/state_dict.hpp"
+#include "motiongan/models/model_file.hpp"
 #include "motiongan/networks/cnn_generator.hpp"
 #include "motiongan/networks/rnn_stream.hpp"
 
@@ -15,6 +15,9 @@ namespace motiongan {
 /// Which network makes the motion: the CNN makes a window of N frames at once, coarse to fine; the RNN goes
 /// on frame by frame, for as long as one likes, and can continue a given motion.
 enum class GeneratorKind { cnn, rnn };
+constexpr NameTable<GeneratorKind, 2> enum_names(GeneratorKind) {
+  return {{{GeneratorKind::cnn, "cnn"}, {GeneratorKind::rnn, "rnn"}}};
+}
 
 struct DvganOptions {
   GeneratorKind generator = GeneratorKind::cnn;
@@ -24,6 +27,16 @@ struct DvganOptions {
   std::uint64_t seed = 1;              ///< of the first weights
 
   bool cuts() const { return final_cut.value_or(generator == GeneratorKind::cnn); }
+
+  void list_fields(FieldList& list) {
+    list.add(generator, {.key = "generator",
+                         .help = "cnn: a window at once, coarse to fine; rnn: frame by frame, for any length",
+                         .saved = false});  // it is the kind of the file
+    list.add(final_cut, {.key = "final_cut",
+                         .help = "generate twice the frames and keep half of them [on for the CNN generator]"});
+    list.add(hidden, {.key = "hidden", .help = "width of the networks", .range = Range::between(1, 65536)});
+    list.add(taps, {.key = "taps", .help = "taps of the convolutions: 3 or 5", .choices = {3, 5}});
+  }
 };
 
 struct GenerateOptions {
@@ -40,7 +53,7 @@ class Dvgan {
   Dvgan(const Context& context, motion::MotionFormat format, const DvganOptions& options = {})
       : context_(context),
         format_(std::move(format)),
-        options_(options),
+        options_(checked(options)),
         generator_(make_generator(context, format_, options)) {}
 
   const Context& context() const { return context_; }
@@ -67,7 +80,7 @@ class Dvgan {
   }
 
   /// Motion [N, B, M], normalised, for a batch of sentences; what training makes its fakes with.
-  Var make(const Sentences& text, const RandomKey& key) const {
+  Var forward(const Sentences& text, const RandomKey& key) const {
     if (is_recurrent()) {
       const RnnGenerator& generator = rnn();
       return generator(text, generator.noise(context_, key, text.batch, generator.frames_made()),
@@ -114,7 +127,7 @@ class Dvgan {
       } else {
         const Sentences text(context_, std::vector<std::vector<int>>(batch, sentence),
                              format_.vocabulary.size());
-        keep(make(text, {.seed = options.seed, .first_sample = first_sample}).value().to_host(), 0);
+        keep(forward(text, {.seed = options.seed, .first_sample = first_sample}).value().to_host(), 0);
       }
     }
     return all;
@@ -130,62 +143,34 @@ class Dvgan {
 
   /// Writes the weights (PyTorch's names and shapes) and everything that is needed to generate, as one
   /// safetensors file.
-  void save(const std::filesystem::path& path) {
-    io::SafeTensors file;
-    describe(file);
-    io::save_parameters(named_parameters(*this), file);
-    file.write(path);
-  }
+  void save(const std::filesystem::path& path) { save_model(*this, path); }
 
-  /// A model that save() wrote, or the generator of a run's checkpoint. Throws, naming the file and what is
-  /// wrong, for any other.
+  /// A model that save() wrote, or the generator of a run's checkpoint. Throws Error, naming the file and what
+  /// is wrong with it, for any other.
   static Dvgan load(const Context& context, const std::filesystem::path& path) {
-    const io::SafeTensors file = io::SafeTensors::read(path);
-    Dvgan model = from_description(context, file, path.string());
-    const bool is_checkpoint = file.tensors.contains("generator.decode.weight");
-    io::load_parameters(named_parameters(model), file, path.string(), is_checkpoint ? "generator." : "");
-    return model;
+    return load_model<Dvgan>(context, path);
   }
 
-  /// Adds the metadata of a model file: which model it is, its options and its motion format.
-  void describe(io::SafeTensors& file) const {
-    file.metadata["motiongan_model"] = is_recurrent() ? rnn_name : cnn_name;
-    nlohmann::json options{{"hidden", options_.hidden}, {"final_cut", options_.cuts()}};
-    if (!is_recurrent()) options["taps"] = options_.taps;
-    file.metadata["options"] = options.dump();
-    file.metadata["format"] = io::to_json(format_).dump();
+  // What model_file.hpp needs.
+  using Options = DvganOptions;
+  using Format = motion::MotionFormat;
+  static constexpr NameTable<GeneratorKind, 2> file_kinds{
+      {{GeneratorKind::cnn, "dvgan_cnn_generator"}, {GeneratorKind::rnn, "dvgan_rnn_generator"}}};
+  static constexpr const char* part_name = "generator";
+  static GeneratorKind& kind_of(DvganOptions& options) { return options.generator; }
+  static std::string write_format(const Format& format) { return io::to_text(format); }
+  static Format read_format(const std::string& text, const std::string& where) {
+    return io::motion_format_from_text(text, where);
   }
-
-  /// A model, with fresh weights, as a file's metadata describe it.
-  static Dvgan from_description(const Context& context, const io::SafeTensors& file,
-                                const std::string& where) {
-    const auto found = file.metadata.find("motiongan_model");
-    require(found != file.metadata.end(), where,
-            ": not a motiongan model (no \"motiongan_model\" in its metadata)");
-    require(found->second == cnn_name || found->second == rnn_name, where, ": holds a model called \"",
-            found->second, "\", expected ", cnn_name, " or ", rnn_name);
-    try {
-      const auto options = nlohmann::json::parse(file.metadata.at("options"));
-      DvganOptions read;
-      read.generator = found->second == rnn_name ? GeneratorKind::rnn : GeneratorKind::cnn;
-      read.hidden = options.at("hidden").get<std::size_t>();
-      if (read.generator == GeneratorKind::cnn) read.taps = options.at("taps").get<std::size_t>();
-      read.final_cut = options.at("final_cut").get<bool>();
-      require(read.hidden > 0 && read.hidden <= 65536 && (read.taps == 3 || read.taps == 5), "hidden ",
-              read.hidden, " or taps ", read.taps, " is out of range");
-      return Dvgan(context, io::motion_format_from_json(nlohmann::json::parse(file.metadata.at("format"))),
-                   read);
-    } catch (const Error& error) {
-      throw Error(where, ": ", error.what());
-    } catch (const std::exception& error) {  // nlohmann's own, and missing keys
-      throw Error(where, ": the model's metadata cannot be read: ", error.what());
-    }
-  }
-
-  static constexpr const char *cnn_name = "dvgan_cnn_generator", *rnn_name = "dvgan_rnn_generator";
 
  private:
   using Network = std::variant<CnnGenerator, RnnGenerator>;
+
+  static DvganOptions checked(DvganOptions options) {
+    check_options(options);
+    options.final_cut = options.cuts();
+    return options;
+  }
 
   static Network make_generator(const Context& context, const motion::MotionFormat& format,
                                 const DvganOptions& options) {

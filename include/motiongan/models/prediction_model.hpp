@@ -1,11 +1,10 @@
 // The baselines of motion completion (SPEC 7.7): networks that go on from a prefix of normalised poses.
 #pragma once
-#include <nlohmann/json.hpp>
 #include <span>
 #include <variant>
 
-#include "motiongan/io/safetensors.hpp"
-#include "motiongan/nn/state_dict.hpp"
+#include "motiongan/core/fields.hpp"
+#include "motiongan/models/model_file.hpp"
 #include "motiongan/networks/erd.hpp"
 #include "motiongan/networks/lstm_3lr.hpp"
 #include "motiongan/networks/lstm_baseline.hpp"
@@ -20,26 +19,8 @@ enum class Predictor {
   erd,      ///< encoder, two layers of LSTM, decoder, trained one step ahead on noisy poses
   lstm_3lr  ///< three layers of LSTM, likewise
 };
-
-/// As it stands in files and tables.
-inline const char* name_of(Predictor predictor) {
-  switch (predictor) {
-    case Predictor::lstm:
-      return "lstm";
-    case Predictor::seq2seq:
-      return "seq2seq";
-    case Predictor::erd:
-      return "erd";
-    default:
-      return "lstm_3lr";
-  }
-}
-
-/// Error, naming what there is, for any other name.
-inline Predictor predictor_from(const std::string& name) {
-  for (const Predictor p : {Predictor::lstm, Predictor::seq2seq, Predictor::erd, Predictor::lstm_3lr})
-    if (name == name_of(p)) return p;
-  throw Error("there is no predictor called '", name, "'; there are lstm, seq2seq, erd and lstm_3lr");
+constexpr NameTable<Predictor, 4> enum_names(Predictor) {
+  return {{{Predictor::lstm, "lstm"}, {Predictor::seq2seq, "seq2seq"}, {Predictor::erd, "erd"}, {Predictor::lstm_3lr, "lstm_3lr"}}};
 }
 
 /// The width that the predictor has in its paper.
@@ -52,22 +33,39 @@ struct PredictionOptions {
   std::size_t hidden = 0;  ///< 0: usual_hidden()
   bool labels = true;      ///< whether seq2seq sees the action; lstm always does, the other two never
   std::uint64_t seed = 1;  ///< of the first weights
+
+  void list_fields(FieldList& list) {
+    list.add(predictor, {.key = "predictor", .help = "which network", .saved = false});
+    list.add(hidden, {.key = "hidden",
+                      .help = "width; 0: that of its paper (lstm 256, seq2seq 1024, the others 1000)",
+                      .range = Range::between(0, 65536)});
+    list.add(labels, {.key = "labels", .help = "whether seq2seq is given the action"});
+  }
+};
+
+/// What a prediction model's numbers are: the size of a pose and the number of actions.
+struct PredictionFormat {
+  std::size_t dof = 0, actions = 0;
+
+  void list_fields(FieldList& list) {
+    list.add(dof, {.key = "dof", .help = "numbers of a pose", .range = Range::between(1, 65536)});
+    list.add(actions, {.key = "actions", .help = "number of actions", .range = Range::between(1, 65536)});
+  }
 };
 
 /// Goes on from a prefix of poses.
 class PredictionModel {
  public:
-  PredictionModel(Context context, std::size_t dof, std::size_t action_count,
-                  const PredictionOptions& options)
+  PredictionModel(Context context, const PredictionFormat& format, const PredictionOptions& options)
       : context_(std::move(context)),
-        dof_(dof),
-        action_count_(action_count),
+        format_(format),
         options_(with_hidden(options)),
-        network_(make_network(context_, dof, action_count, options_)) {}
+        network_(make_network(context_, format_, options_)) {}
 
   const Context& context() const { return context_; }
-  std::size_t dof() const { return dof_; }
-  std::size_t action_count() const { return action_count_; }
+  const PredictionFormat& format() const { return format_; }
+  std::size_t dof() const { return format_.dof; }
+  std::size_t action_count() const { return format_.actions; }
   /// With the hidden size that it has.
   const PredictionOptions& options() const { return options_; }
 
@@ -82,7 +80,7 @@ class PredictionModel {
   }
 
   /// The `frames` poses [frames, B, dof] that follow the prefix [n, B, dof]; `actions` [B, Y] one-hot.
-  Var make(const Var& prefix, const Var& actions, std::size_t frames) const {
+  Var forward(const Var& prefix, const Var& actions, std::size_t frames) const {
     return std::visit(
         [&](const auto& network) -> Var {
           if constexpr (sees_actions<decltype(network)>)
@@ -113,85 +111,58 @@ class PredictionModel {
                              std::span<const std::size_t> actions, std::size_t frames) const {
     require(batch > 0 && frames > 0, "predict: ", batch, " prefixes and ", frames,
             " frames to make, expected at least 1 of each");
-    require(!prefixes.empty() && prefixes.size() % (batch * dof_) == 0, "predict: ", prefixes.size(),
-            " numbers are no whole frames of ", batch, " poses of ", dof_, " numbers");
+    require(!prefixes.empty() && prefixes.size() % (batch * dof()) == 0, "predict: ", prefixes.size(),
+            " numbers are no whole frames of ", batch, " poses of ", dof(), " numbers");
     require(actions.size() == batch, "predict: ", actions.size(), " actions for ", batch, " prefixes");
     const NoGrad off;
-    const Tensor prefix = Tensor::from(context_, {prefixes.size() / batch / dof_, batch, dof_}, prefixes);
-    return make(Var::constant(prefix), Var::constant(one_hot(context_, actions, action_count_)), frames)
+    const Tensor prefix = Tensor::from(context_, {prefixes.size() / batch / dof(), batch, dof()}, prefixes);
+    return forward(Var::constant(prefix), Var::constant(one_hot(context_, actions, action_count())), frames)
         .value()
         .to_host();
   }
 
   /// Writes the weights (PyTorch's names and shapes) and the model's description as one safetensors file.
-  void save(const std::filesystem::path& path) {
-    io::SafeTensors file;
-    describe(file);
-    io::save_parameters(named_parameters(*this), file);
-    file.write(path);
-  }
+  void save(const std::filesystem::path& path) { save_model(*this, path); }
 
-  /// A model that save() wrote, or the one of a run's checkpoint. Throws, naming the file and what is wrong,
-  /// for any other.
+  /// A model that save() wrote, or that of a run's checkpoint. Throws Error, naming the file and what is wrong
+  /// with it, for any other.
   static PredictionModel load(const Context& context, const std::filesystem::path& path) {
-    const io::SafeTensors file = io::SafeTensors::read(path);
-    PredictionModel model = from_description(context, file, path.string());
-    const bool is_checkpoint = file.metadata.contains("iteration");
-    io::load_parameters(named_parameters(model), file, path.string(), is_checkpoint ? "generator." : "");
-    return model;
+    return load_model<PredictionModel>(context, path);
   }
 
-  /// Adds the metadata of a model file: which model it is, its options and what it is for.
-  void describe(io::SafeTensors& file) const {
-    file.metadata["motiongan_model"] = concat(prefix_of_name, name_of(options_.predictor));
-    file.metadata["options"] =
-        nlohmann::json{{"hidden", options_.hidden}, {"labels", options_.labels}}.dump();
-    file.metadata["format"] = nlohmann::json{{"dof", dof_}, {"actions", action_count_}}.dump();
-  }
-
-  /// A model, with fresh weights, as a file's metadata describe it.
-  static PredictionModel from_description(const Context& context, const io::SafeTensors& file,
-                                          const std::string& where) {
-    const auto found = file.metadata.find("motiongan_model");
-    require(found != file.metadata.end(), where,
-            ": not a motiongan model (no \"motiongan_model\" in its metadata)");
-    require(found->second.starts_with(prefix_of_name), where, ": holds a model called \"", found->second,
-            "\", expected a predictor");
-    try {
-      PredictionOptions read;
-      read.predictor = predictor_from(found->second.substr(std::string_view(prefix_of_name).size()));
-      const auto options = nlohmann::json::parse(file.metadata.at("options")),
-                 format = nlohmann::json::parse(file.metadata.at("format"));
-      read.hidden = options.at("hidden").get<std::size_t>();
-      read.labels = options.at("labels").get<bool>();
-      const auto dof = format.at("dof").get<std::size_t>(), actions = format.at("actions").get<std::size_t>();
-      require(read.hidden > 0 && read.hidden <= 65536 && dof <= 65536 && actions <= 65536, "hidden ",
-              read.hidden, ", dof ", dof, " or actions ", actions, " is out of range");
-      return PredictionModel(context, dof, actions, read);
-    } catch (const Error& error) {
-      throw Error(where, ": ", error.what());
-    } catch (const std::exception& error) {  // nlohmann's own, and missing keys
-      throw Error(where, ": the model's metadata cannot be read: ", error.what());
-    }
+  // What model_file.hpp needs.
+  using Options = PredictionOptions;
+  using Format = PredictionFormat;
+  static constexpr NameTable<Predictor, 4> file_kinds{{{Predictor::lstm, "predictor_lstm"},
+                                                       {Predictor::seq2seq, "predictor_seq2seq"},
+                                                       {Predictor::erd, "predictor_erd"},
+                                                       {Predictor::lstm_3lr, "predictor_lstm_3lr"}}};
+  static constexpr const char* part_name = "generator";
+  static Predictor& kind_of(PredictionOptions& options) { return options.predictor; }
+  static std::string write_format(PredictionFormat format) { return io::fields_to_text(fields_of(format)); }
+  static PredictionFormat read_format(const std::string& text, const std::string& where) {
+    PredictionFormat format;
+    io::fields_from_text(fields_of(format), text, where + ": the model's format");
+    return format;
   }
 
  private:
   using Network = std::variant<LstmBaseline, Seq2seq, Erd, Lstm3lr>;
-  static constexpr const char* prefix_of_name = "predictor_";
 
   template <class N>
   static constexpr bool sees_actions =
       std::is_same_v<std::decay_t<N>, LstmBaseline> || std::is_same_v<std::decay_t<N>, Seq2seq>;
 
   static PredictionOptions with_hidden(PredictionOptions options) {
+    check_options(options);
     if (options.hidden == 0) options.hidden = usual_hidden(options.predictor);
     return options;
   }
 
-  static Network make_network(const Context& context, std::size_t dof, std::size_t actions,
+  static Network make_network(const Context& context, const PredictionFormat& format,
                               const PredictionOptions& options) {
-    require(dof > 0 && actions > 0, "PredictionModel: ", dof, " numbers a pose and ", actions,
-            " actions, expected at least 1 of each");
+    check_options(format);
+    const std::size_t dof = format.dof, actions = format.actions;
     const Initializer init(context, options.seed);
     const std::size_t k = options.hidden;
     switch (options.predictor) {
@@ -207,7 +178,7 @@ class PredictionModel {
   }
 
   Context context_;
-  std::size_t dof_, action_count_;
+  PredictionFormat format_;
   PredictionOptions options_;
   Network network_;
 };

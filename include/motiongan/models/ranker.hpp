@@ -1,23 +1,37 @@
 // A ranker as its user sees it: how well a description fits a motion, and the embedding of motion that the
 // evaluation measures in (Lin & Amer, eq. 8 and 9; SPEC 7).
 #pragma once
-#include <nlohmann/json.hpp>
 #include <variant>
 
+#include "motiongan/core/fields.hpp"
 #include "motiongan/data/motion_format_json.hpp"
-#include "motiongan/nn/state_dict.hpp"
+#include "motiongan/models/model_file.hpp"
 #include "motiongan/networks/rnn_ranker.hpp"
 
 namespace motiongan {
 
 /// What embeds a motion: the CNN critic's trunk, or mean pose and mean motion.
 enum class RankerKind { cnn, rnn };
+constexpr NameTable<RankerKind, 2> enum_names(RankerKind) {
+  return {{{RankerKind::cnn, "cnn"}, {RankerKind::rnn, "rnn"}}};
+}
 
 struct RankerOptions {
   RankerKind kind = RankerKind::rnn;
   std::size_t hidden = 1024;  ///< k
   std::size_t taps = 3;       ///< of the CNN's convolutions: 3 or 5
   std::uint64_t seed = 1;     ///< of the first weights
+
+  void list_fields(FieldList& list) {
+    list.add(kind, {.key = "kind",
+                    .help = "rnn: mean pose and mean motion; cnn: the CNN critic's trunk",
+                    .option = "--ranker",
+                    .saved = false});  // it is the kind of the file
+    list.add(hidden, {.key = "hidden",
+                      .help = "width of the network, and of the embedding",
+                      .range = Range::between(1, 65536)});
+    list.add(taps, {.key = "taps", .help = "taps of the CNN's convolutions: 3 or 5", .choices = {3, 5}});
+  }
 };
 
 /// F(S, A) = <h_txt, h / |h|>: the score of description S for motion A.
@@ -26,7 +40,7 @@ class Ranker {
   Ranker(const Context& context, motion::MotionFormat format, const RankerOptions& options = {})
       : context_(context),
         format_(std::move(format)),
-        options_(options),
+        options_((check_options(options), options)),
         network_(make_network(context, format_, options)) {}
 
   const Context& context() const { return context_; }
@@ -96,65 +110,25 @@ class Ranker {
 
   /// Writes the weights (PyTorch's names and shapes) and everything that is needed to rank, as one
   /// safetensors file.
-  void save(const std::filesystem::path& path) {
-    io::SafeTensors file;
-    describe(file);
-    io::save_parameters(named_parameters(*this), file);
-    file.write(path);
-  }
+  void save(const std::filesystem::path& path) { save_model(*this, path); }
 
-  /// A ranker that save() wrote, or that of a run's checkpoint. Throws, naming the file and what is wrong,
-  /// for any other.
+  /// A ranker that save() wrote, or that of a run's checkpoint. Throws Error, naming the file and what is
+  /// wrong with it, for any other.
   static Ranker load(const Context& context, const std::filesystem::path& path) {
-    const io::SafeTensors file = io::SafeTensors::read(path);
-    Ranker ranker = from_description(context, file, path.string());
-    const bool is_checkpoint = file.metadata.contains("iteration");
-    io::load_parameters(named_parameters(ranker), file, path.string(), is_checkpoint ? "ranker." : "");
-    return ranker;
+    return load_model<Ranker>(context, path);
   }
 
-  /// Whether a file's metadata say that it holds a ranker.
-  static bool describes(const io::SafeTensors& file) {
-    const auto found = file.metadata.find("motiongan_model");
-    return found != file.metadata.end() && (found->second == cnn_name || found->second == rnn_name);
+  // What model_file.hpp needs.
+  using Options = RankerOptions;
+  using Format = motion::MotionFormat;
+  static constexpr NameTable<RankerKind, 2> file_kinds{
+      {{RankerKind::cnn, "cnn_ranker"}, {RankerKind::rnn, "rnn_ranker"}}};
+  static constexpr const char* part_name = "ranker";
+  static RankerKind& kind_of(RankerOptions& options) { return options.kind; }
+  static std::string write_format(const Format& format) { return io::to_text(format); }
+  static Format read_format(const std::string& text, const std::string& where) {
+    return io::motion_format_from_text(text, where);
   }
-
-  /// Adds the metadata of a model file: which model it is, its options and its motion format.
-  void describe(io::SafeTensors& file) const {
-    const bool is_cnn = options_.kind == RankerKind::cnn;
-    file.metadata["motiongan_model"] = is_cnn ? cnn_name : rnn_name;
-    nlohmann::json options{{"hidden", options_.hidden}};
-    if (is_cnn) options["taps"] = options_.taps;
-    file.metadata["options"] = options.dump();
-    file.metadata["format"] = io::to_json(format_).dump();
-  }
-
-  /// A ranker, with fresh weights, as a file's metadata describe it.
-  static Ranker from_description(const Context& context, const io::SafeTensors& file,
-                                 const std::string& where) {
-    const auto found = file.metadata.find("motiongan_model");
-    require(found != file.metadata.end(), where,
-            ": not a motiongan model (no \"motiongan_model\" in its metadata)");
-    require(describes(file), where, ": holds a model called \"", found->second, "\", expected ", cnn_name,
-            " or ", rnn_name, "; motiongan train ranker makes one");
-    try {
-      const auto options = nlohmann::json::parse(file.metadata.at("options"));
-      RankerOptions read;
-      read.kind = found->second == cnn_name ? RankerKind::cnn : RankerKind::rnn;
-      read.hidden = options.at("hidden").get<std::size_t>();
-      if (read.kind == RankerKind::cnn) read.taps = options.at("taps").get<std::size_t>();
-      require(read.hidden > 0 && read.hidden <= 65536 && (read.taps == 3 || read.taps == 5), "hidden ",
-              read.hidden, " or taps ", read.taps, " is out of range");
-      return Ranker(context, io::motion_format_from_json(nlohmann::json::parse(file.metadata.at("format"))),
-                    read);
-    } catch (const Error& error) {
-      throw Error(where, ": ", error.what());
-    } catch (const std::exception& error) {  // nlohmann's own, and missing keys
-      throw Error(where, ": the model's metadata cannot be read: ", error.what());
-    }
-  }
-
-  static constexpr const char *cnn_name = "cnn_ranker", *rnn_name = "rnn_ranker";
 
  private:
   using Network = std::variant<CnnRanker, RnnRanker>;

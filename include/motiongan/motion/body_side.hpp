@@ -1,4 +1,4 @@
-// Left and right: which side of the body a joint is on, by its name, and which joints mirror each other.
+// Left and right by joint name, and pairs of mirrored joints.
 #pragma once
 #include <cctype>
 #include <cmath>
@@ -17,13 +17,13 @@ namespace motiongan::motion {
 
 enum class Side : std::uint8_t { centre, left, right };
 
-/// A side, and the part of a name that tells it: name.substr(at, count). Nothing where `side` is centre.
+/// A side and the part of the name that indicates it, name.substr(at, count); empty if `side` is centre.
 struct SideMark {
   Side side = Side::centre;
   std::size_t at = 0, count = 0;
 };
 
-/// Where a joint's name tells its side: "LeftFoot", "LThumb", "UpperLeg_L", "mixamorig:LeftArm".
+/// The side indicated by a joint's name: "LeftFoot", "LThumb", "UpperLeg_L", "mixamorig:LeftArm".
 inline SideMark side_mark(std::string_view name) {
   const std::size_t prefix = name.rfind(':') == std::string_view::npos ? 0 : name.rfind(':') + 1;
   name.remove_prefix(prefix);
@@ -42,26 +42,26 @@ inline SideMark side_mark(std::string_view name) {
   };
   if (stands_alone(name[n - 2]) && letter(n - 1).side != Side::centre) return letter(n - 1);
   if (stands_alone(name[1])) return letter(0);
-  // "LHipJoint" but not "LowerBack"; a small first letter as in "lFoot".
+  // "LHipJoint" and "lFoot", but not "LowerBack".
   return std::isupper(static_cast<unsigned char>(name[1])) ? letter(0) : SideMark{};
 }
 
-/// Which side of the body a joint is on, by its name.
+/// The side of the body a joint is on, by its name.
 inline Side side_of(std::string_view name) { return side_mark(name).side; }
 
-/// Whether the names are those of a left joint and its right counterpart: the same but for the side.
+/// Whether the names denote a left joint and its right counterpart, i.e. differ only in the side.
 inline bool are_mirrored(std::string_view left, std::string_view right) {
   const SideMark l = side_mark(left), r = side_mark(right);
   return l.side == Side::left && r.side == Side::right && left.substr(0, l.at) == right.substr(0, r.at) &&
          left.substr(l.at + l.count) == right.substr(r.at + r.count);
 }
 
-/// Two joints, the second on the other side of the body.
+/// Two joints on opposite sides of the body.
 using JointPair = std::pair<std::size_t, std::size_t>;
 
 namespace body_side_detail {
 
-/// Where joints are if none is turned, [joints].
+/// Joint positions with all rotations zero, [joints].
 inline std::vector<Vec3> rest_positions(const Skeleton& skeleton) {
   std::vector<Vec3> out;
   for (const Joint& j : skeleton.joints)
@@ -69,7 +69,7 @@ inline std::vector<Vec3> rest_positions(const Skeleton& skeleton) {
   return out;
 }
 
-/// Mirrored joints among the children of `left` and of `right`, by name.
+/// Pairs of mirrored joints, by name, among the children of `left` and of `right`.
 inline std::vector<JointPair> mirrored_children(const Skeleton& skeleton,
                                                 const std::vector<std::vector<std::size_t>>& below,
                                                 std::size_t left, std::size_t right) {
@@ -82,11 +82,11 @@ inline std::vector<JointPair> mirrored_children(const Skeleton& skeleton,
 
 }  // namespace body_side_detail
 
-/// The pairs of joints (left, right) that tell which way a body faces. By names: of every two mirrored
-/// branches (legs, arms), the first mirrored joints that lie apart; the CMU skeleton's hip joints coincide,
-/// so there it is the thighs. Where no names tell: of the children of the first joint that has several, the
-/// two that lie furthest apart over the ground at rest, which is some direction across the body, not
-/// necessarily left. Empty where no such two lie apart.
+/// The pairs of joints (left, right) that determine which way a body faces. By name: for every two mirrored
+/// branches (legs, arms), the first mirrored joints at different places; the CMU skeleton's hip joints
+/// coincide, so there it is the thighs. If no names indicate a side: of the children of the first joint with
+/// several, the two furthest apart over the ground at rest, which gives some direction across the body, not
+/// necessarily left. Empty if no such pair exists.
 inline std::vector<JointPair> across_body(const Skeleton& skeleton) {
   namespace detail = body_side_detail;
   const auto below = children(skeleton);
@@ -118,7 +118,7 @@ inline std::vector<JointPair> across_body(const Skeleton& skeleton) {
         widest = std::hypot(d[0], d[2]);
         out = {{branches[a], branches[b]}};
       }
-    break;  // only the first branching
+    break;  // only the first branching joint
   }
   return out;
 }

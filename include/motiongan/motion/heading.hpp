@@ -1,4 +1,4 @@
-// Rotations of a body as yaw and tilt: which way it faces, and how it leans.
+// Rotations of a body as yaw (heading) and tilt (lean).
 #pragma once
 #include <cmath>
 
@@ -6,8 +6,8 @@
 
 namespace motiongan::motion {
 
-/// q = yaw * tilt as (tilt x, yaw, tilt z), radians: the yaw turns about y, the tilt is an exponential map
-/// without y. Upside down (a tilt of pi) the yaw is arbitrary; 0 is taken.
+/// Decomposes q = yaw * tilt and returns (tilt x, yaw, tilt z) in radians: the yaw is about y, the tilt is an
+/// exponential map without y. At a tilt of pi (upside down) the yaw is undefined and set to 0.
 inline Vec3 heading_from_quat(const Quat& q) {
   const double norm = std::hypot(q.w, q.y);
   const Quat yaw = norm < 1e-12 ? Quat{} : Quat{q.w / norm, 0, q.y / norm, 0};
@@ -16,11 +16,12 @@ inline Vec3 heading_from_quat(const Quat& q) {
   return {tilt[0], angle > pi ? angle - 2 * pi : angle <= -pi ? angle + 2 * pi : angle, tilt[2]};
 }
 
+/// Inverse of heading_from_quat.
 inline Quat quat_from_heading(const Vec3& heading) {
   return multiply(axis_rotation(1, heading[1]), quat_from_expmap({heading[0], 0, heading[2]}));
 }
 
-/// The same rotation with the yaw within half a turn of the frame before and the tilt unwrapped.
+/// The same rotation with the yaw within half a turn of `previous` and the tilt unwrapped.
 inline Vec3 unwrap_heading(const Vec3& heading, const Vec3& previous) {
   const Vec3 tilt = unwrap_expmap({heading[0], 0, heading[2]}, {previous[0], 0, previous[2]});
   return {tilt[0], unwrap_angle(heading[1], previous[1]), tilt[2]};

@@ -1,4 +1,4 @@
-// Where joints are: forward kinematics, bone lengths and which joint carries a skeleton through space.
+// Forward kinematics, bone lengths, and the joint that carries a skeleton through space.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -10,14 +10,14 @@
 
 namespace motiongan::motion {
 
-/// Joints in the world's frame.
+/// Joints in world coordinates.
 struct GlobalPose {
   std::vector<Vec3> positions;  ///< [frames, joints], in the file's unit
   std::vector<Quat> rotations;  ///< [frames, joints]
 };
 
-/// Error unless the motion's arrays have the sizes that its skeleton and frames ask for, and parents come
-/// before children.
+/// Throws Error unless the array sizes match the skeleton and the number of frames, the rate is positive, and
+/// parents come before children.
 inline void check_motion(const Motion& motion) {
   const std::size_t joints = motion.skeleton.size();
   const std::size_t n = motion.frames * joints;
@@ -97,7 +97,7 @@ inline std::vector<std::vector<std::size_t>> children(const Skeleton& skeleton) 
   return out;
 }
 
-/// Whether joint j is moved against its parent by more than a millionth of the skeleton's bones.
+/// Whether joint j moves relative to its parent by more than a millionth of the total bone length.
 inline bool has_moving_track(const Motion& motion, std::size_t j) {
   double size = 0;
   for (const Joint& joint : motion.skeleton.joints) size += length(joint.offset);
@@ -107,8 +107,9 @@ inline bool has_moving_track(const Motion& motion, std::size_t j) {
   return false;
 }
 
-/// The first joint from the top that travels (SPEC section 6): joint 0, unless it and those below it rest and
-/// a joint further down the unbranched chain has a moving position track of its own. 0 where nothing travels.
+/// The root of the motion: the first joint from the top whose position changes over time, searched along the
+/// unbranched chain below joint 0 (Bandai-Namco files move `Hips`, a child of a resting `joint_Root`). 0 if
+/// nothing travels.
 inline int moving_root(const Motion& motion) {
   check_motion(motion);
   const auto below = children(motion.skeleton);
@@ -119,8 +120,8 @@ inline int moving_root(const Motion& motion) {
   return 0;
 }
 
-/// The motion with the joints above `root` removed and their transforms folded into it: every joint left
-/// stays where it was in the world. Error if a joint above `root` has other children, for they would be lost.
+/// The motion with the joints above `root` removed and their transforms folded into it; the remaining joints
+/// keep their world positions. Throws Error if a joint above `root` has other children, which would be lost.
 inline Motion fold_into_root(const Motion& motion, int root) {
   check_motion(motion);
   if (root == 0) return motion;
@@ -146,7 +147,7 @@ inline Motion fold_into_root(const Motion& motion, int root) {
   std::vector<Channel> turns;
   for (const Channel c : top.channels)
     if (is_rotation(c)) turns.push_back(c);
-  // The new root must be able to hold any place and direction.
+  // The new root needs channels for any position and orientation.
   if (turns.size() < 3) turns = {Channel::z_rotation, Channel::x_rotation, Channel::y_rotation};
   if (top.channels.size() < 6) {
     top.channels = {Channel::x_position, Channel::y_position, Channel::z_position};

@@ -1,4 +1,4 @@
-// From BVH's channels to local rotations and back, and changing a motion's rate and length.
+// Conversion between BVH channels and local rotations; resampling, slicing and joining of motions.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -14,8 +14,9 @@
 
 namespace motiongan::motion {
 
-/// Frames per second of a frame time as files print it: 0.0083333 means 120. A rate within 0.05% of a whole
-/// number is that number (29.97 and 59.94, 0.1% off, stay what they are).
+/// Frames per second for a frame time (seconds) as printed in files: 0.0083333 gives 120. A rate within 0.05%
+/// of an integer becomes that integer (29.97 and 59.94, which are 0.1% off, stay as they are). Throws Error
+/// unless the frame time is positive and finite.
 inline double rate_from_frame_time(double frame_time) {
   require(std::isfinite(frame_time) && frame_time > 0, "frame time ", frame_time,
           " seconds, expected a positive number");
@@ -23,8 +24,9 @@ inline double rate_from_frame_time(double frame_time) {
   return std::abs(rate - whole) <= 5e-4 * rate ? whole : rate;
 }
 
-/// The clip's channels as local rotations and positions. A position channel replaces its part of the joint's
-/// offset; joints without rotation channels do not turn.
+/// A clip's channels as local rotations and positions. A position channel replaces that component of the
+/// joint's offset; joints without rotation channels do not rotate. Throws Error if the number of channel
+/// values is wrong.
 inline Motion to_motion(const Clip& clip) {
   const std::size_t joints = clip.skeleton.size(), width = clip.skeleton.channel_count();
   require(clip.channels.size() == clip.frames * width, "clip '", clip.id, "' has ", clip.channels.size(),
@@ -56,8 +58,8 @@ inline Motion to_motion(const Clip& clip) {
   return motion;
 }
 
-/// Local rotations as Euler angles in each joint's order, continuous over all the frames that it was ever
-/// given: a motion may come in pieces. What a joint has no channel for is left out (a rotation about a
+/// Converts local rotations to Euler angles in each joint's channel order, continuous over all frames
+/// appended so far, so a motion may come in pieces. Anything without a channel is lost (a rotation about a
 /// missing axis, a position without position channels).
 class ChannelEncoder {
  public:
@@ -68,8 +70,8 @@ class ChannelEncoder {
     }
   }
 
-  /// Appends the motion's channels [frames, channels] to `out`: degrees and length units, as in a Clip. Error
-  /// if the motion has another number of joints.
+  /// Appends the motion's channels [frames, channels] to `out`, in degrees and length units as in a Clip.
+  /// Throws Error if the number of joints differs.
   void append(const Motion& motion, std::vector<double>& out) {
     check_motion(motion);
     require(motion.skeleton.size() == orders_.size(), "a motion of ", motion.skeleton.size(),
@@ -77,7 +79,7 @@ class ChannelEncoder {
     for (std::size_t f = 0; f < motion.frames; ++f, started_ = true) {
       for (std::size_t j = 0; j < orders_.size(); ++j) {
         const Quat& q = motion.rotation(f, j);
-        // The first frame has nothing to be continuous with: it takes the smallest angles.
+        // The first frame has no predecessor: it takes the smallest angles.
         const Vec3 angles =
             started_ ? euler_from_quat_near(orders_[j], q, previous_[j]) : euler_from_quat(orders_[j], q);
         previous_[j] = angles;
@@ -89,13 +91,14 @@ class ChannelEncoder {
   }
 
  private:
-  std::vector<std::vector<Channel>> channels_;  // of each joint
+  std::vector<std::vector<Channel>> channels_;  // per joint
   std::vector<EulerOrder> orders_;
-  std::vector<Vec3> previous_;  // angles of the frame before, [joints]
+  std::vector<Vec3> previous_;  // angles of the previous frame, [joints]
   bool started_ = false;
 };
 
-/// The motion in its skeleton's own channels, see ChannelEncoder.
+/// The motion in its skeleton's own channels, with continuous Euler angles (see ChannelEncoder). Throws Error
+/// if the rate is not positive.
 inline Clip to_clip(const Motion& motion, std::string id) {
   check_motion(motion);
   require(motion.rate > 0, "motion '", id, "' has a rate of ", motion.rate,
@@ -110,14 +113,14 @@ inline Clip to_clip(const Motion& motion, std::string id) {
   return clip;
 }
 
-/// Where a frame of a motion at another rate lies: `t` of the way from an old frame to the one after it.
+/// Where a resampled frame lies: a fraction `t` of the way from source frame `before` to `after`.
 struct BetweenFrames {
-  std::size_t before = 0, after = 0;  ///< the same where the old frame is taken as it is
+  std::size_t before = 0, after = 0;  ///< equal if a source frame is used unchanged
   double t = 0;
 };
 
-/// The frames that resample() makes of a motion of `frames` frames. Error if a rate is not positive, or for a
-/// billion frames.
+/// Number of frames that resample() makes from `frames` frames. Throws Error if a rate is not positive, or
+/// for a billion frames or more.
 inline std::size_t resampled_frames(std::size_t frames, double from, double to) {
   require(std::isfinite(to) && to > 0 && std::isfinite(from) && from > 0, "cannot resample from ", from,
           " to ", to, " frames per second, expected more than 0");
@@ -128,11 +131,12 @@ inline std::size_t resampled_frames(std::size_t frames, double from, double to) 
   return static_cast<std::size_t>(count) + 1;
 }
 
-/// Where new frame `f` lies in a motion of `frames` frames; `step` is how many old frames make a new one.
+/// Where output frame `f` lies in a motion of `frames` frames; `step` is the number of source frames per
+/// output frame.
 inline BetweenFrames between_frames(std::size_t f, double step, std::size_t frames) {
   const double at = std::min(static_cast<double>(f) * step, static_cast<double>(frames - 1));
   const double nearest = std::round(at);
-  if (std::abs(at - nearest) < 1e-9) {  // an old frame is taken as it is
+  if (std::abs(at - nearest) < 1e-9) {  // use a source frame unchanged
     const auto same = static_cast<std::size_t>(nearest);
     return {same, same, 0};
   }
@@ -140,7 +144,7 @@ inline BetweenFrames between_frames(std::size_t f, double step, std::size_t fram
   return {before, before + 1, at - std::floor(at)};
 }
 
-/// Appends the frame there to `out`: rotations by slerp, positions linearly.
+/// Appends the interpolated frame to `out`: rotations by slerp, positions linearly.
 inline void append_between(const Motion& motion, const BetweenFrames& at, Motion& out) {
   for (std::size_t j = 0; j < motion.skeleton.size(); ++j) {
     const Vec3 &a = motion.position(at.before, j), &b = motion.position(at.after, j);
@@ -151,8 +155,9 @@ inline void append_between(const Motion& motion, const BetweenFrames& at, Motion
   ++out.frames;
 }
 
-/// The motion between its first and last frame at another rate: rotations by slerp, positions linearly. The
-/// new frames lie at 0, 1/rate, 2/rate ... and none after the last old one.
+/// The motion resampled to `rate` frames per second: rotations by slerp, positions linearly. The output
+/// frames lie at 0, 1/rate, 2/rate, ... seconds, none after the last source frame. Throws Error if a rate is
+/// not positive.
 inline Motion resample(const Motion& motion, double rate) {
   check_motion(motion);
   require(std::isfinite(rate) && rate > 0, "cannot resample to ", rate,
@@ -173,11 +178,11 @@ inline Motion resample(const Motion& motion, double rate) {
   return out;
 }
 
-/// Frames first .. first + count - 1; Error where the motion does not have them.
+/// Frames first .. first + count - 1. Throws Error if the motion does not have them.
 inline Motion slice(const Motion& motion, std::size_t first, std::size_t count) {
   check_motion(motion);
   require(first <= motion.frames && count <= motion.frames - first, "cannot take frames ", first, " to ",
-          first + count, " of a motion of ", motion.frames);
+          first + count, " of a motion of ", motion.frames, " frames");
   const auto joints = static_cast<std::ptrdiff_t>(motion.skeleton.size());
   const auto begin = static_cast<std::ptrdiff_t>(first) * joints;
   const auto end = begin + static_cast<std::ptrdiff_t>(count) * joints;
@@ -190,7 +195,8 @@ inline Motion slice(const Motion& motion, std::size_t first, std::size_t count) 
   return out;
 }
 
-/// One motion after the other, in the skeleton of the first. Error if their joints or rates do not fit.
+/// `second` appended to `first`, in the skeleton of `first`. Throws Error if the numbers of joints or the
+/// rates differ.
 inline Motion join(Motion first, const Motion& second) {
   check_motion(first);
   check_motion(second);

@@ -1,4 +1,4 @@
-// A motion as points: where every joint is, without rotations.
+// A motion as joint positions, without rotations.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,14 +7,15 @@
 
 namespace motiongan::motion {
 
-/// What forward kinematics makes of a Motion, or a file of positions holds. Of the skeleton, names, parents
-/// and offsets count; offsets are those of the file, or mean bone vectors where the file has only positions.
+/// Joint positions, from forward kinematics of a Motion or from a file. Only names, parents and offsets of
+/// the skeleton are used; the offsets are those of the file, or estimated from the positions if the file has
+/// only positions (with_offsets_of).
 struct PositionClip {
   std::string id;
   Skeleton skeleton;
   double rate = 0;  ///< frames per second
   std::size_t frames = 0;
-  std::vector<Vec3> positions;  ///< [frames, joints], in the world, y up, in the file's unit
+  std::vector<Vec3> positions;  ///< [frames, joints], world coordinates, y up, in the file's unit
 };
 
 }  // namespace motiongan::motion

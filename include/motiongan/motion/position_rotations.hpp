@@ -1,4 +1,4 @@
-// From where joints are to how they are turned, so that positions can be written as BVH.
+// Joint rotations from joint positions, so that positions can be written as BVH.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -16,10 +16,10 @@
 
 namespace motiongan::motion {
 
-/// The skeleton with channels that can hold any rotation of its joints and any place of its root. A skeleton
-/// without channels (of a bone list) gets Z X Y rotations everywhere and root positions. Of one with channels
-/// those are kept; only a joint with children and fewer than three rotations gets all three, and a root
-/// without a place its positions.
+/// The skeleton with channels for any rotation of its joints and any position of its root. A skeleton without
+/// channels (from a bone list) gets Z X Y rotations everywhere and root positions. Existing channels are
+/// kept, except that a joint with children and fewer than three rotations gets all three, and a root with
+/// fewer than three positions gets all three.
 inline Skeleton with_bvh_channels(Skeleton skeleton) {
   const bool none = skeleton.channel_count() == 0;
   const auto below = children(skeleton);
@@ -40,7 +40,7 @@ inline Skeleton with_bvh_channels(Skeleton skeleton) {
   return skeleton;
 }
 
-/// Indices of the joints in the order that BVH asks for: each joint's whole branch before the next one.
+/// Joint indices in BVH order, depth first: each joint's whole branch before the next one.
 inline std::vector<std::size_t> depth_first_order(const Skeleton& skeleton) {
   const auto below = children(skeleton);
   std::vector<std::size_t> order, open;
@@ -54,8 +54,8 @@ inline std::vector<std::size_t> depth_first_order(const Skeleton& skeleton) {
   return order;
 }
 
-/// The clip with its joints in depth_first_order. One that is in it, such as any from a BVH file, comes back
-/// as it is.
+/// The clip with its joints in depth_first_order. A clip already in that order, such as any from a BVH file,
+/// is returned unchanged.
 inline PositionClip depth_first(const PositionClip& clip) {
   const std::size_t joints = clip.skeleton.size();
   const std::vector<std::size_t> order = depth_first_order(clip.skeleton);
@@ -74,22 +74,22 @@ inline PositionClip depth_first(const PositionClip& clip) {
 
 namespace position_rotations_detail {
 
-/// A bone by which a joint's rotation is seen.
+/// A bone whose observed direction determines a joint's rotation.
 struct Bone {
-  std::size_t from = 0, to = 0;  ///< joints; `from` stands where the turned joint stands
-  Vec3 direction{};              ///< at rest, of length 1
+  std::size_t from = 0, to = 0;  ///< joints; `from` coincides with the rotating joint
+  Vec3 direction{};              ///< at rest, unit length
   double weight = 0;             ///< its length
 };
 
-/// The bones that a joint turns: `own` end in its children, `far` in children of joints that stand at its own
-/// place (of zero offset) and so may be turned by those too.
+/// The bones that a joint rotates. `own` end at its children. `far` end at children of joints that coincide
+/// with it (zero offset), so those joints may rotate them too.
 struct TurnedBones {
   std::vector<Bone> own, far;
-  bool on_a_line = true;  ///< all `own` ones lie on one line, and leave the twist about it open
+  bool on_a_line = true;  ///< all `own` bones are collinear: the twist is undetermined
 };
 
-/// Which joints are placed rather than hung on a bone, [joints]: the root, and below a handle (a joint with a
-/// single child, from the root down) one that has positions of its own.
+/// Which joints are positioned directly rather than by a bone, [joints]: the root, and joints with position
+/// channels on the unbranched chain below it.
 inline std::vector<char> placed_joints(const Skeleton& skeleton) {
   const auto below = children(skeleton);
   std::vector<char> out(skeleton.size(), 0);
@@ -106,7 +106,7 @@ inline std::vector<TurnedBones> turned_bones(const Skeleton& skeleton, const std
   double sum = 0;
   for (const double l : lengths) sum += l;
   std::vector<TurnedBones> out(skeleton.size());
-  // Children come after their parents, so that backwards a joint is complete before it is handed up.
+  // Backwards, children come before their parents: a joint is complete before its parent uses it.
   for (std::size_t j = skeleton.size(); j-- > 1;) {
     const Joint& joint = skeleton.joints[j];
     const auto parent = static_cast<std::size_t>(joint.parent);
@@ -124,8 +124,8 @@ inline std::vector<TurnedBones> turned_bones(const Skeleton& skeleton, const std
   return out;
 }
 
-/// The bones' directions at rest and in a frame of `positions` [joints], the seen ones turned by `back`.
-/// Bones without a direction (both ends in one place) are left out.
+/// Bone directions at rest and as observed in a frame of `positions` [joints], the observed ones rotated by
+/// `back`. Bones of zero observed length are skipped.
 inline std::vector<DirectionPair> seen_bones(const std::vector<Bone>& bones, const Vec3* positions,
                                              const Quat& back) {
   std::vector<DirectionPair> out;
@@ -137,8 +137,8 @@ inline std::vector<DirectionPair> seen_bones(const std::vector<Bone>& bones, con
   return out;
 }
 
-/// The rotation about the direction that `q` gives to bones on a line, after `q`, that serves `far` best; by
-/// nothing where they do not tell.
+/// `q` followed by the rotation about `axis`, the direction of collinear bones after `q`, that fits `far`
+/// best; `q` itself if they do not determine it.
 inline Quat twisted_for(const Quat& q, const Vec3& axis, const std::vector<DirectionPair>& far) {
   double sine = 0, cosine = 0, weights = 0;
   for (const DirectionPair& p : far) {
@@ -152,7 +152,7 @@ inline Quat twisted_for(const Quat& q, const Vec3& axis, const std::vector<Direc
   return normalize(multiply({std::cos(half), s * axis[0], s * axis[1], s * axis[2]}, q));
 }
 
-/// The one direction, of length 1, that bones on a line give: at rest and seen. Nothing where none is seen.
+/// The common direction of collinear bones, unit length, at rest and as observed; empty if none is observed.
 inline std::optional<DirectionPair> line_of(const std::vector<DirectionPair>& bones) {
   if (bones.empty()) return std::nullopt;
   DirectionPair out{bones.front().rest, {}, 1};
@@ -167,8 +167,8 @@ inline std::optional<DirectionPair> line_of(const std::vector<DirectionPair>& bo
   return out;
 }
 
-/// The rotation of a joint in its parent's frame, for what is seen there of its bones. `reference` is the
-/// rotation relative to which the twist is zero, `previous` that of the frame before.
+/// Local rotation of a joint from the observed directions of its bones in the parent's frame. The twist is
+/// zero relative to `reference`; `previous` is the rotation in the previous frame.
 inline Quat joint_rotation(const TurnedBones& bones, const std::vector<DirectionPair>& own,
                            const std::vector<DirectionPair>& far, const Quat& reference,
                            const Quat& previous) {
@@ -182,7 +182,8 @@ inline Quat joint_rotation(const TurnedBones& bones, const std::vector<Direction
   return own.empty() ? q : twisted_for(q, line->seen, far);
 }
 
-/// What motion_from_positions documents as the twist's zero, for a joint that was seen so, [frames].
+/// The rotation with zero twist, as motion_from_positions documents it, for a joint observed as `lines`
+/// [frames].
 inline Quat twist_reference(const std::vector<std::optional<DirectionPair>>& lines) {
   Vec3 sum{};
   double lowest = 1;
@@ -200,31 +201,30 @@ inline Quat twist_reference(const std::vector<std::optional<DirectionPair>>& lin
 
 }  // namespace position_rotations_detail
 
-/// The motion whose joints look in the directions that the clip's positions show. Bone lengths are exactly
-/// the skeleton's, whatever lengths are seen; the root stands where the clip has it. Joints come in the order
-/// of depth_first(clip), channels as with_bvh_channels gives them, so that the motion can be written as BVH.
+/// The motion whose bones point in the directions given by the clip's positions. Bone lengths are exactly the
+/// skeleton's, whatever the observed lengths; the root is where the clip has it. Joints are in the order of
+/// depth_first(clip), with channels from with_bvh_channels, so the motion can be written as BVH.
 ///
-/// Positions do not tell everything; the rest is chosen so. From the root down, in the frame of the parent as
-/// solved:
-/// - a joint with one bone (or bones on one line) turns by the shortest rotation from the bone's rest
-/// direction
-///   to the seen one: its twist about the bone is zero, relative to the rest pose. Near half a turn the
-///   shortest rotation jumps; where the clip comes within 45 degrees of it (rest poses that nobody ever
-///   stands in, such as Bandai-Namco's) the twist is zero relative to the clip's mean direction instead. With
+/// Positions do not fully determine rotations. The rest is chosen as follows, from the root down, in the
+/// frame of the already solved parent:
+/// - A joint with one bone (or collinear bones) takes the shortest rotation from the bone's rest direction to
+///   the observed one: its twist about the bone is zero relative to the rest pose. The shortest rotation
+///   jumps near half a turn, so where the clip comes within 45 degrees of that (rest poses that nobody ever
+///   takes, such as Bandai-Namco's) the twist is zero relative to the clip's mean direction instead. With
 ///   `reference` [joints of the clip], local rotations of a natural pose such as a frame of the seed's BVH,
-///   it is zero relative to that pose: give it too where the pieces of one motion are turned one by one;
-/// - a joint with two or more bones that are not on one line turns by the rotation that fits all best,
-/// weighted
-///   by their lengths (best_rotation);
-/// - a child of zero offset (CMU's LHipJoint) stands at its parent's place. Its bones count for the parent
-/// where
-///   the parent has no bones of its own, or only ones that leave its twist open; the child itself then turns
-///   by what is left, so that its bones look exactly where they were seen;
-/// - joints without bones (hands, toes, heads) do not turn, or stay as in `reference`; where a bone has no
-///   direction because both its ends are seen in one place, the joint keeps the rotation of the frame before;
-/// - below a resting handle (Bandai-Namco's joint_Root) a joint with position channels stands where it is
-/// seen. So positions that come from a motion of this skeleton are kept (to rounding), twists of single bones
-/// are not. Error where sizes do not fit or a number is not finite.
+///   it is zero relative to that pose; pass it also if the pieces of one motion are converted separately.
+/// - A joint with two or more bones that are not collinear takes the rotation that fits all of them best,
+///   weighted by length (best_rotation).
+/// - A child of zero offset (CMU's LHipJoint) coincides with its parent. Its bones count for the parent if
+///   the parent has no bones of its own, or only bones that leave its twist undetermined. The child then
+///   takes the remaining rotation, so its bones point exactly in the observed directions.
+/// - Joints without bones (hands, toes, heads) do not rotate, or keep the rotation in `reference`. If a bone
+///   has no direction because both ends coincide, the joint keeps its rotation from the previous frame.
+/// - Below a resting root (Bandai-Namco's joint_Root), a joint with position channels stays at its observed
+///   position.
+///
+/// Positions computed from a motion of this skeleton are reproduced up to rounding; twists of single bones
+/// are not. Throws Error if sizes do not match or a value is not finite.
 inline Motion motion_from_positions(const PositionClip& clip, std::span<const Quat> reference = {}) {
   namespace detail = position_rotations_detail;
   const std::size_t joints = clip.skeleton.size();
@@ -249,7 +249,7 @@ inline Motion motion_from_positions(const PositionClip& clip, std::span<const Qu
 
   const std::vector<char> placed = detail::placed_joints(ordered.skeleton);
   const auto bones = detail::turned_bones(out.skeleton, placed);
-  std::vector<Quat> global(clip.frames * joints);  // rotations in the world
+  std::vector<Quat> global(clip.frames * joints);  // world rotations
   std::vector<std::vector<DirectionPair>> own(clip.frames), far(clip.frames);
   std::vector<std::optional<DirectionPair>> lines(clip.frames);
   for (std::size_t j = 0; j < joints; ++j) {
@@ -265,7 +265,7 @@ inline Motion motion_from_positions(const PositionClip& clip, std::span<const Qu
     Quat previous = zero;
     for (std::size_t f = 0; f < clip.frames; ++f) {
       Quat q = detail::joint_rotation(bones[j], own[f], far[f], zero, previous);
-      // q and -q are the same rotation: keep to the one nearer to the frame before.
+      // q and -q are the same rotation: take the one nearer to the previous frame.
       if (dot(q, previous) < 0) q = {-q.w, -q.x, -q.y, -q.z};
       previous = q;
       global[f * joints + j] = normalize(multiply(above(f), q));

@@ -1,4 +1,4 @@
-// Another rate for motion that comes in pieces, and for motion that is counted from its end.
+// Resampling of motion that arrives in pieces, and resampling aligned to the last frame.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -11,27 +11,27 @@
 
 namespace motiongan::motion {
 
-/// resample() for a motion that is still being made: the pieces that it gives back, joined, are the resampled
-/// whole, bit for bit. Memory does not grow; of the motion it keeps what the next frame needs.
+/// Streaming version of resample(): the pieces it returns, joined, equal the resampled whole bit for bit.
+/// Memory use is bounded: only the frames needed next are kept.
 class Resampler {
  public:
-  /// `frames` at `from` frames per second will come, to be made frames at `to`. Error if a rate is not
+  /// For `frames` input frames at `from` frames per second, output at `to`. Throws Error if a rate is not
   /// positive.
   Resampler(std::size_t frames, double from, double to)
       : frames_(frames), total_(resampled_frames(frames, from, to)), from_(from), to_(to) {}
 
-  /// Frames that all pieces together give.
+  /// Total number of output frames.
   std::size_t total() const { return total_; }
 
-  /// The frames that can be told now; perhaps none. Error for a piece of another rate or skeleton, or more
-  /// frames than were announced.
+  /// Returns the output frames that can be computed so far, possibly none. Throws Error for a piece with
+  /// another rate or skeleton, or more frames than announced.
   Motion append(Motion piece) {
     require(std::abs(piece.rate / from_ - 1) < 1e-6, "a piece of ", piece.rate,
-            " frames per second cannot be resampled, expected ", from_);
+            " frames per second was appended to a resampler, expected ", from_);
     piece.rate = from_;
     held_ = held_.frames == 0 ? std::move(piece) : join(std::move(held_), piece);
-    const std::size_t end = first_ + held_.frames;  // of what is known
-    require(end <= frames_, end, " frames came to be resampled, expected the ", frames_, " announced");
+    const std::size_t end = first_ + held_.frames;  // of the input so far
+    require(end <= frames_, "got ", end, " frames to resample, expected the ", frames_, " announced");
     Motion out;
     out.skeleton = held_.skeleton;
     out.rate = to_;
@@ -53,13 +53,13 @@ class Resampler {
   }
 
  private:
-  std::size_t frames_, total_, made_ = 0, first_ = 0;  // first_: the frame that held_ begins with
+  std::size_t frames_, total_, made_ = 0, first_ = 0;  // first_: input frame at which held_ starts
   double from_, to_;
   Motion held_;
 };
 
-/// As resample(), but counted back from the end: the last frame is the motion's last, and what is not a whole
-/// number of steps is left out at the start. For a motion that is to be continued.
+/// Like resample(), but aligned to the end: the last frame is kept, and a remainder shorter than one step is
+/// dropped at the start. For a motion that will be continued.
 inline Motion resample_to_end(const Motion& motion, double rate) {
   const auto reversed = [](const Motion& m) {
     Motion out = m;

@@ -1,4 +1,4 @@
-// Where a character stands: steps and turns added up to a track over the ground, and back.
+// The track of the root over the ground: steps and turns integrated, and the inverse.
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -10,24 +10,24 @@
 
 namespace motiongan::motion {
 
-/// A place on the ground and a heading: where the root stands after the last frame of a motion that is given
-/// in steps. `started` tells whether there was such a frame: if not, the next frame stands at x, z, yaw
-/// itself, and its own step and turn, which lead there from a frame that nobody knows, are left out.
+/// Ground position and heading of the root after the last frame of a motion given in steps. If `started` is
+/// false there was no such frame: the next frame is placed at x, z, yaw itself, and its own step and turn,
+/// which lead there from an unknown frame, are ignored.
 struct RootTrack {
   double x = 0, z = 0;  ///< in the file's unit
   double yaw = 0;       ///< radians
   bool started = false;
-  double height = 0;  ///< the root's y, in the file's unit; PositionLayout sets and reads it
+  double height = 0;  ///< the root's y, in the file's unit; used only by PositionLayout
 };
 
-/// Turns the ground coordinates by `yaw` radians about y, as axis_rotation(1, yaw) turns a vector.
+/// Rotates ground coordinates by `yaw` radians about y, as axis_rotation(1, yaw) rotates a vector.
 inline void turn_ground(double& x, double& z, double yaw) {
   const double cosine = std::cos(yaw), sine = std::sin(yaw), old_x = x, old_z = z;
   x = cosine * old_x + sine * old_z;
   z = cosine * old_z - sine * old_x;
 }
 
-/// Takes the track one frame on: a step in the heading's frame of the frame before, then the turn.
+/// Advances the track by one frame: a step in the heading of the previous frame, then the turn (radians).
 inline void advance(RootTrack& track, double step_x, double step_z, double turn) {
   if (track.started) {
     turn_ground(step_x, step_z, track.yaw);
@@ -38,18 +38,18 @@ inline void advance(RootTrack& track, double step_x, double step_z, double turn)
   track.started = true;
 }
 
-/// Where poses hold the root's track.
+/// Dimensions of the root's track in a pose vector.
 struct TrackDims {
   std::size_t yaw = 0;
   std::optional<std::size_t> position;  ///< of x; y and z follow
 };
 
-/// Poses [frames, dof] with the root's yaw (counted through whole turns) and position become poses with its
-/// turn and step over `step` frames: the inverse of advance(). The first `step` frames have no predecessor:
-/// they take the values of frame `step`, zeros where there is none.
+/// Converts poses [frames, dof] in place from the root's yaw (unwrapped) and position to its turn and step
+/// over `step` frames: the inverse of advance(). The first `step` frames have no predecessor and take the
+/// values of frame `step`, or zeros if there is none.
 inline void differ_track(std::span<double> poses, std::size_t dof, const TrackDims& dims, std::size_t step) {
   const std::size_t frames = poses.size() / dof;
-  for (std::size_t f = frames; f-- > step;) {  // backwards: the earlier frame is needed as it was
+  for (std::size_t f = frames; f-- > step;) {  // backwards, because the earlier frame is needed unmodified
     double* const pose = &poses[f * dof];
     const double* const before = pose - step * dof;
     pose[dims.yaw] -= before[dims.yaw];
@@ -68,9 +68,9 @@ inline void differ_track(std::span<double> poses, std::size_t dof, const TrackDi
   }
 }
 
-/// The motion moved over the ground so that `root` in its frame 0 stands at the x, z of `to`; with `facing`
-/// it is turned too, so that the root's yaw there is that of `to`. Heights stay. A motion without frames is
-/// left as it is.
+/// The motion moved over the ground so that `root` in frame 0 is at the x, z of `to`. With `facing` it is
+/// also rotated so that the root's yaw there is that of `to`. Heights do not change. A motion without frames
+/// is returned unchanged.
 inline Motion placed_at(Motion motion, std::size_t root, const RootTrack& to, bool facing) {
   if (motion.frames == 0) return motion;
   const Vec3 first = motion.position(0, root);

@@ -1,6 +1,6 @@
-// Rotations in the four forms that motion data uses: Euler angles of any order, matrices, quaternions and
-// exponential maps, and what keeps them continuous over time. Angles are in radians here; only BVH files use
-// degrees. Vectors are columns: a rotation R takes v to R v, and Euler angles apply as R = R1 R2 R3.
+// Rotations as Euler angles of any order, matrices, quaternions and exponential maps, and unwrapping over
+// time. Angles are in radians here; only BVH files use degrees. Vectors are columns: a rotation R maps v to R
+// v, and Euler angles compose as R = R1 R2 R3.
 #pragma once
 #include <array>
 #include <cmath>
@@ -36,7 +36,7 @@ inline double length(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }
 
 inline double dot(const Quat& a, const Quat& b) { return a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z; }
 
-/// The rotation b followed by the rotation a, as matrices multiply: R(multiply(a, b)) = R(a) R(b).
+/// The rotation b followed by a, in the order of matrix products: R(multiply(a, b)) = R(a) R(b).
 inline Quat multiply(const Quat& a, const Quat& b) {
   return {a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z, a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y,
           a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
@@ -45,7 +45,7 @@ inline Quat multiply(const Quat& a, const Quat& b) {
 /// Inverse of a unit quaternion.
 inline Quat inverse(const Quat& q) { return {q.w, -q.x, -q.y, -q.z}; }
 
-/// The unit quaternion along q; Error if q is zero or not finite.
+/// q scaled to unit length. Throws Error if q is zero or not finite.
 inline Quat normalize(const Quat& q) {
   const double n = std::sqrt(dot(q, q));
   require(std::isfinite(n) && n > 0, "quaternion (", q.w, ", ", q.x, ", ", q.y, ", ", q.z,
@@ -65,12 +65,12 @@ inline double angle_between(const Quat& a, const Quat& b) {
   return 2 * std::atan2(std::hypot(d.x, d.y, d.z), std::abs(d.w));
 }
 
-/// Constant-speed rotation from a (t = 0) to b (t = 1) along the shorter arc.
+/// Spherical linear interpolation from a (t = 0) to b (t = 1) along the shorter arc.
 inline Quat slerp(const Quat& a, const Quat& b, double t) {
   const double sign = dot(a, b) < 0 ? -1 : 1;
   const Quat d{sign * b.w - a.w, sign * b.x - a.x, sign * b.y - a.y, sign * b.z - a.z};
   const Quat s{sign * b.w + a.w, sign * b.x + a.x, sign * b.y + a.y, sign * b.z + a.z};
-  // The half-angle form of the arc's angle keeps its precision where acos of the dot product loses it.
+  // atan2 of the half angle stays precise where acos of the dot product does not.
   const double theta = 2 * std::atan2(std::sqrt(dot(d, d)), std::sqrt(dot(s, s)));
   const double denominator = std::sin(theta);
   const double wa = theta < 1e-8 ? 1 - t : std::sin((1 - t) * theta) / denominator;
@@ -97,8 +97,8 @@ inline Mat3 matrix_from_quat(const Quat& q) {
           2 * (yz - wx),     2 * (xz - wy), 2 * (yz + wx), 1 - 2 * (xx + yy)};
 }
 
-/// The quaternion of a rotation matrix; the largest of its four parts is found first, so that no division is
-/// by a small number.
+/// The quaternion of a rotation matrix. The largest of its four components is chosen first, which avoids
+/// dividing by a small number.
 inline Quat quat_from_matrix(const Mat3& m) {
   const double w = 1 + m[0] + m[4] + m[8], x = 1 + m[0] - m[4] - m[8];
   const double y = 1 - m[0] + m[4] - m[8], z = 1 - m[0] - m[4] + m[8];
@@ -130,8 +130,8 @@ inline Vec3 expmap_from_quat(const Quat& q) {
   return {factor * q.x, factor * q.y, factor * q.z};
 }
 
-/// Among the exponential maps r (1 + 2 pi k / |r|), which all are the rotation r, the one nearest to
-/// `previous`. A rotation by (nearly) nothing has no axis of its own and takes the one of `previous`.
+/// Of the exponential maps r (1 + 2 pi k / |r|), which are all the rotation r, the one nearest to `previous`.
+/// A rotation of (nearly) zero has no axis of its own and takes that of `previous`.
 inline Vec3 unwrap_expmap(const Vec3& r, const Vec3& previous) {
   const double angle = length(r);
   if (angle < 1e-12) {
@@ -149,19 +149,19 @@ inline Vec3 expmap_from_matrix(const Mat3& m) { return expmap_from_quat(quat_fro
 
 // ---- Euler angles
 
-/// The axes of a joint's rotation channels, in the order in which they multiply: {2, 1, 0} is R = Rz Ry Rx.
-/// Up to three axes, in any order; the first and the third may be the same.
+/// The axes of a joint's rotation channels in multiplication order: {2, 1, 0} is R = Rz Ry Rx. Up to three
+/// axes, in any order; the first and third may be equal.
 struct EulerOrder {
   std::array<std::size_t, 3> axes{};  ///< 0, 1 or 2 for x, y or z
   std::size_t count = 0;
 
   EulerOrder() = default;
 
-  /// The rotation channels among `channels`; Error if there are more than three.
+  /// The rotation channels in `channels`. Throws Error if there are more than three.
   explicit EulerOrder(std::span<const Channel> channels) {
     for (const Channel c : channels) {
       if (!is_rotation(c)) continue;
-      require(count < 3, "a joint has more than three rotation channels; at most three are understood");
+      require(count < 3, "a joint has more than three rotation channels, expected at most three");
       axes[count++] = axis(c);
     }
   }
@@ -173,29 +173,28 @@ inline Quat axis_rotation(std::size_t axis, double angle) {
   return {std::cos(angle / 2), v[0], v[1], v[2]};
 }
 
-/// The rotation R1 R2 R3 of the first `order.count` angles.
+/// The rotation R1 R2 R3 of the first `order.count` angles (radians).
 inline Quat quat_from_euler(const EulerOrder& order, const Vec3& angles) {
   Quat q;
   for (std::size_t i = 0; i < order.count; ++i) q = multiply(q, axis_rotation(order.axes[i], angles[i]));
   return q;
 }
 
-/// `angle` plus the number of full turns that brings it nearest to `previous`.
+/// `angle` plus the multiple of 2 pi that brings it nearest to `previous`.
 inline double unwrap_angle(double angle, double previous) {
   return angle + 2 * pi * std::round((previous - angle) / (2 * pi));
 }
 
-/// Euler angles of q. The middle one is in [-pi/2, pi/2] (in [0, pi] for orders like ZXZ), the others in
-/// [-pi, pi]. In gimbal lock, where the first and third angle turn about one axis, the third one is
-/// `third_in_lock` and the first has the rest. With fewer than three axes: the nearest rotation they can
-/// make.
+/// Euler angles of q in radians. The middle one is in [-pi/2, pi/2] ([0, pi] for orders like ZXZ), the others
+/// in [-pi, pi]. In gimbal lock, where the first and third axes coincide, the third angle is `third_in_lock`
+/// and the first takes the rest. With fewer than three axes: the nearest rotation they can represent.
 inline Vec3 euler_from_quat(const EulerOrder& order, const Quat& q, double third_in_lock = 0) {
   const std::array<double, 3> v{q.x, q.y, q.z};
   const auto [i, j, k] = order.axes;
   if (order.count == 0) return {};
   if (order.count == 1 || (order.count == 2 && i == j) || (order.count == 3 && i == j && j == k))
     return {unwrap_angle(2 * std::atan2(v[i], q.w), 0), 0, 0};
-  if (order.count == 3 && (i == j || j == k)) {  // a repeated neighbour adds nothing: solve without it
+  if (order.count == 3 && (i == j || j == k)) {  // equal adjacent axes act as one
     EulerOrder two;
     two.axes = {i, i == j ? k : j, 0};
     two.count = 2;
@@ -205,14 +204,14 @@ inline Vec3 euler_from_quat(const EulerOrder& order, const Quat& q, double third
   const double sign = (j + 3 - i) % 3 == 1 ? 1 : -1;  // axis i times axis j = sign * axis (3 - i - j)
   const std::size_t other = 3 - i - j;
   if (order.count == 2) {
-    // With half angles a and b, the dot product of q with Ri(2a) Rj(2b) falls apart into a term in a + b and
-    // one in a - b; each has its maximum at an arc tangent.
+    // With half angles a and b, the dot product of q with Ri(2a) Rj(2b) splits into a term in a + b and one
+    // in a - b, each maximised by an arctangent.
     const double sum = std::atan2(v[i] + v[j], q.w - sign * v[other]);
     const double difference = std::atan2(v[i] - v[j], q.w + sign * v[other]);
     return {unwrap_angle(sum + difference, 0), unwrap_angle(sum - difference, 0), 0};
   }
-  // Ri(a) Rj(b) Ri(c) has, in half angles, the parts cos b cos(a + c), cos b sin(a + c) about i, sin b cos(a
-  // - c) about j and sin b sin(a - c) about the third axis. The orders with three different axes come down to
+  // In half angles, Ri(a) Rj(b) Ri(c) has the components cos b cos(a + c), cos b sin(a + c) about i, sin b
+  // cos(a - c) about j and sin b sin(a - c) about the third axis. Orders of three different axes reduce to
   // it: Ri(a) Rj(b) Rk(c) Rj(90 degrees) = Ri(a) Rj(b + 90 degrees) Ri(-sign c).
   const bool proper = i == k;
   const Quat p = proper ? q : multiply(q, axis_rotation(j, pi / 2));
@@ -221,7 +220,7 @@ inline Vec3 euler_from_quat(const EulerOrder& order, const Quat& q, double third
   const double middle = 2 * std::atan2(s, c);
   const double half_sum = std::atan2(u[i], p.w), half_difference = std::atan2(sign * u[other], u[j]);
   const double third_sign = proper ? 1 : -sign;
-  constexpr double lock = 1e-13;  // below it a half angle is rounding noise
+  constexpr double lock = 1e-13;  // below it, a half angle is rounding noise
   double first = half_sum + half_difference, third = half_sum - half_difference;
   if (s < lock) {
     third = third_sign * third_in_lock;
@@ -234,7 +233,7 @@ inline Vec3 euler_from_quat(const EulerOrder& order, const Quat& q, double third
 }
 
 /// The same rotation as `angles`, as near to `previous` as full turns and, with three axes, the second
-/// solution (first + 180, 180 - middle, third + 180 degrees; -middle for orders like ZXZ) allow.
+/// solution allow (first + 180, 180 - middle, third + 180 degrees; -middle for orders like ZXZ).
 inline Vec3 unwrap_euler(const EulerOrder& order, const Vec3& angles, const Vec3& previous) {
   const auto nearest = [&](const Vec3& a) {
     Vec3 out{};
@@ -249,7 +248,7 @@ inline Vec3 unwrap_euler(const EulerOrder& order, const Vec3& angles, const Vec3
   return dot(d, d) <= dot(e, e) ? plain : flipped;
 }
 
-/// Euler angles of q as near to `previous` as possible, in gimbal lock too.
+/// Euler angles of q as near to `previous` as possible, including in gimbal lock.
 inline Vec3 euler_from_quat_near(const EulerOrder& order, const Quat& q, const Vec3& previous) {
   return unwrap_euler(order, euler_from_quat(order, q, previous[2]), previous);
 }

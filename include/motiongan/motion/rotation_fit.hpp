@@ -1,4 +1,4 @@
-// Rotations that take known directions to seen ones: of one bone, or of several at once.
+// Rotations that map rest directions to observed ones, for one bone or several.
 #pragma once
 #include <array>
 #include <cmath>
@@ -10,13 +10,13 @@
 
 namespace motiongan::motion {
 
-/// A direction at rest and as it was seen, both of length 1.
+/// A direction at rest and as observed, both unit vectors.
 struct DirectionPair {
   Vec3 rest{}, seen{};
-  double weight = 1;  ///< how much it counts, above 0
+  double weight = 1;  ///< above 0
 };
 
-/// Some unit vector at right angles to `v`, which must not be zero.
+/// Some unit vector perpendicular to `v`, which must not be zero.
 inline Vec3 any_normal(const Vec3& v) {
   const Vec3 axis = std::abs(v[0]) <= std::abs(v[1]) && std::abs(v[0]) <= std::abs(v[2]) ? Vec3{1, 0, 0}
                     : std::abs(v[1]) <= std::abs(v[2])                                   ? Vec3{0, 1, 0}
@@ -25,34 +25,33 @@ inline Vec3 any_normal(const Vec3& v) {
   return scale(n, 1 / length(n));
 }
 
-/// The rotation about `axis` (of length 1) that, after `q`, comes nearest to `target`.
+/// `q` followed by the rotation about the unit vector `axis` that brings it nearest to `target`.
 inline Quat twisted_towards(const Quat& q, const Vec3& axis, const Quat& target) {
-  // twist(a) q . target = cos(a/2) q . target + sin(a/2) (axis q) . target: largest at an arc tangent.
+  // twist(a) q . target = cos(a/2) q . target + sin(a/2) (axis q) . target, maximised by an arctangent.
   const Quat turned = multiply({0, axis[0], axis[1], axis[2]}, q);
   const double along = dot(turned, target), still = dot(q, target), n = std::hypot(along, still);
-  if (n < 1e-12) return q;  // all are as far
+  if (n < 1e-12) return q;  // all angles are equally far
   return normalize(multiply({still / n, along / n * axis[0], along / n * axis[1], along / n * axis[2]}, q));
 }
 
-/// The shortest rotation that takes `rest` to `seen`, both of length 1. Where they are opposite there are
-/// many: the one nearest to `previous`.
+/// The shortest rotation from `rest` to `seen`, both unit vectors. If they are opposite it is not unique: the
+/// one nearest to `previous`.
 inline Quat shortest_rotation(const Vec3& rest, const Vec3& seen, const Quat& previous) {
   const Vec3 sum = add(rest, seen);
   const double n = length(sum);
   if (n > 1e-6) {
-    // Twice the half-way direction: a turn by twice the angle between `rest` and it.
+    // Rotate by twice the angle between `rest` and the half-way direction.
     const Vec3 half = scale(sum, 1 / n), axis = cross(rest, half);
     return normalize({dot(rest, half), axis[0], axis[1], axis[2]});
   }
-  // Half a turn about any normal of `rest`, straightened by the little that is missing (n is small, not 0).
+  // Half a turn about any normal of `rest`, corrected by the small remainder (n is small, not 0).
   const Vec3 normal = any_normal(rest);
   const Quat half_turn{0, normal[0], normal[1], normal[2]};
   const Quat exact = multiply(shortest_rotation(scale(rest, -1), seen, {}), half_turn);
   return twisted_towards(exact, seen, previous);
 }
 
-/// Eigenvector of the largest eigenvalue of the symmetric matrix m [4, 4], by Jacobi's rotations; of
-/// length 1.
+/// Unit eigenvector of the largest eigenvalue of the symmetric matrix m [4, 4], by Jacobi rotations.
 inline std::array<double, 4> largest_eigenvector(std::array<std::array<double, 4>, 4> m) {
   std::array<std::array<double, 4>, 4> vectors{};  // columns
   for (std::size_t i = 0; i < 4; ++i) vectors[i][i] = 1;
@@ -94,8 +93,8 @@ inline std::array<double, 4> largest_eigenvector(std::array<std::array<double, 4
   return {vectors[0][best], vectors[1][best], vectors[2][best], vectors[3][best]};
 }
 
-/// The rotation R with the smallest weighted sum of |R rest - seen|^2 (Wahba's problem, by Davenport's
-/// quaternion form). What the pairs leave open, as when all that is seen lies on one line, is taken from
+/// The rotation R that minimises the weighted sum of |R rest - seen|^2 (Wahba's problem, Davenport's
+/// q-method). What the pairs leave undetermined, as when all observed directions are collinear, is taken from
 /// `previous`. The pairs must not be empty.
 inline Quat best_rotation(std::span<const DirectionPair> pairs, const Quat& previous) {
   // q^T K q is the weighted sum of (R rest) . seen for the rotation R of the unit quaternion q.
@@ -114,8 +113,8 @@ inline Quat best_rotation(std::span<const DirectionPair> pairs, const Quat& prev
     }
     weights += w;
   }
-  // A pull towards `previous` that is felt only where nothing else decides: it moves what is well determined
-  // by about 1e-11 and what is hardly determined by less than 1e-5 of a bone.
+  // A pull towards `previous` that matters only where the pairs decide nothing: it moves what is well
+  // determined by about 1e-11, and what is barely determined by less than 1e-5 of a bone.
   const std::array<double, 4> before{previous.w, previous.x, previous.y, previous.z};
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t j = 0; j < 4; ++j) k[i][j] += 1e-11 * weights * before[i] * before[j];

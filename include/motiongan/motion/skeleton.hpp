@@ -1,5 +1,4 @@
-// What a motion is made of: joints, skeletons, clips as BVH stores them and motions as the library computes
-// with them.
+// Joints, skeletons, clips as stored in BVH files, and motions as the library processes them.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -18,7 +17,7 @@ struct Quat {
   friend bool operator==(const Quat&, const Quat&) = default;
 };
 
-/// One number of a BVH frame. Rotations are in degrees, positions in the file's length unit.
+/// One value of a BVH frame. Rotations are in degrees, positions in the file's length unit.
 enum class Channel { x_position, y_position, z_position, x_rotation, y_rotation, z_rotation };
 
 inline bool is_rotation(Channel c) { return c >= Channel::x_rotation; }
@@ -29,10 +28,10 @@ inline std::size_t axis(Channel c) { return static_cast<std::size_t>(c) % 3; }
 struct Joint {
   std::string name;
   int parent = -1;  ///< index into Skeleton::joints, always smaller than the joint's own; -1 for the root
-  Vec3 offset{};    ///< from the parent's origin, in the parent's frame, in the file's unit
+  Vec3 offset{};    ///< from the parent, in the parent's frame, in the file's unit
   std::vector<Channel>
-      channels;  ///< in the order of the file; rotations apply left to right: R = R1 * R2 * R3
-  std::optional<Vec3> end_site;  ///< offset of the End Site, where the file has one
+      channels;  ///< in file order; rotations apply left to right: R = R1 * R2 * R3
+  std::optional<Vec3> end_site;  ///< offset of the End Site, if any
 
   friend bool operator==(const Joint&, const Joint&) = default;
 };
@@ -43,7 +42,7 @@ struct Skeleton {
 
   std::size_t size() const { return joints.size(); }
 
-  /// How many numbers one frame of a BVH file of this skeleton has.
+  /// Number of values per frame in a BVH file of this skeleton.
   std::size_t channel_count() const {
     std::size_t n = 0;
     for (const Joint& j : joints) n += j.channels.size();
@@ -62,17 +61,17 @@ struct Skeleton {
 
 /// A BVH file: a skeleton and its channels, frame by frame, exactly as written.
 struct Clip {
-  std::string id;  ///< the file's name without folder and extension
+  std::string id;  ///< file name without folder and extension
   Skeleton skeleton;
-  double frame_time = 0;  ///< seconds between two frames
+  double frame_time = 0;  ///< seconds
   std::size_t frames = 0;
   std::vector<double> channels;  ///< [frames, skeleton.channel_count()], degrees and length units
 
   double rate() const { return 1.0 / frame_time; }
 };
 
-/// A motion free of channel orders: local rotations of every joint and the root's track.
-/// Every motion of the library, read, generated or procedural, passes through this form.
+/// A motion independent of channel order: every joint's local rotation and position. All motion in the
+/// library, whether read, generated or procedural, takes this form.
 struct Motion {
   Skeleton skeleton;
   double rate = 0;  ///< frames per second

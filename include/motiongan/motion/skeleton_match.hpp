@@ -1,4 +1,4 @@
-// Whether two skeletons have the same joints, and if not, in what they differ.
+// Comparison of the joints of two skeletons.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -10,9 +10,9 @@
 
 namespace motiongan::motion {
 
-/// What is different in `other`, one joint an entry: missing, extra, renamed (another name at the same place
-/// and below the same parent), below another parent, or, where nothing else differs, in another order. Empty
-/// where a pose of one skeleton is a pose of the other. Offsets and channels may differ.
+/// Differences of `other` from `expected`, one entry per joint: missing, extra, renamed (another name at the
+/// same index and under the same parent), under another parent or, if nothing else differs, in a different
+/// order. Empty if a pose of one skeleton is a pose of the other. Offsets and channels may differ.
 inline std::vector<std::string> joint_differences(const Skeleton& expected, const Skeleton& other) {
   const auto parent_of = [](const Skeleton& s, std::size_t j) {
     const int parent = s.joints[j].parent;
@@ -57,14 +57,15 @@ inline std::vector<std::string> joint_differences(const Skeleton& expected, cons
   for (std::size_t j = 0; only_order && j < common; ++j)
     if (expected.joints[j].name != other.joints[j].name)
       out.push_back("joint " + std::to_string(j) + " is '" + other.joints[j].name + "', expected '" +
-                    expected.joints[j].name + "': another order");
+                    expected.joints[j].name + "': different order");
   if (out.empty())
-    out.push_back(concat(other.size(), " joints, expected ", expected.size(), ": several share a name"));
+    out.push_back(
+        concat(other.size(), " joints, expected ", expected.size(), ": joint names are not unique"));
   return out;
 }
 
-/// Error that lists the first eight differences; `what` is what the message calls the other skeleton's owner,
-/// such as "the prior walk.bvh".
+/// Throws Error, listing the first eight differences, unless both skeletons have the same joints. `what`
+/// names the owner of `other` in the message, such as "the prior walk.bvh".
 inline void require_same_joints(const Skeleton& expected, const Skeleton& other, const std::string& what) {
   const std::vector<std::string> differences = joint_differences(expected, other);
   if (differences.empty()) return;
@@ -73,7 +74,7 @@ inline void require_same_joints(const Skeleton& expected, const Skeleton& other,
   for (std::size_t i = 0; i < std::min(differences.size(), shown); ++i)
     list += (i > 0 ? "; " : "") + differences[i];
   if (differences.size() > shown) list += concat("; and ", differences.size() - shown, " more");
-  throw Error(what, " has another skeleton (", other.size(), " joints, expected ", expected.size(),
+  throw Error(what, " has a different skeleton (", other.size(), " joints, expected ", expected.size(),
               "): ", list,
               ". Use motion of the skeleton that the model was trained on; bone lengths may differ");
 }

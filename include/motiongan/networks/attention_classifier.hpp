@@ -1,19 +1,21 @@
-// The classifier of the attention WGAN-GP (Malek-Podjaski & Deligianni; SPEC 5): which class a second of
-// motion is of.
+// The classifier of the attention WGAN-GP (Malek-Podjaski & Deligianni).
 #pragma once
 #include "motiongan/networks/attention_block.hpp"
 
 namespace motiongan {
 
 struct AttentionClassifierOptions {
-  std::size_t dof = 0;       ///< numbers of a pose
-  std::size_t classes = 0;   ///< Y
-  std::size_t hidden = 256;  ///< C
-  bool attention = true;
+  std::size_t dof = 0;       ///< values per pose
+  std::size_t classes = 0;   ///< Y, the number of classes
+  std::size_t hidden = 256;  ///< C, hidden width
+  bool attention = true;     ///< false: the paper's ablation
 };
 
+/// Predicts the class of a motion: `encode` -> `block.0` -> pooling -> `attention` -> `block.1` -> ReLU ->
+/// mean over frames -> `logits`.
 class AttentionClassifier {
  public:
+  /// Throws Error if dof, classes or hidden is 0.
   AttentionClassifier(Initializer init, const AttentionClassifierOptions& options) : options_(options) {
     require(options.dof > 0 && options.classes > 0 && options.hidden > 0,
             "AttentionClassifier: dof, classes and hidden must be positive");
@@ -26,14 +28,15 @@ class AttentionClassifier {
 
   const AttentionClassifierOptions& options() const { return options_; }
 
-  /// One logit per class, [B, Y], of motion [T, B, dof].
+  /// Class logits [B, Y] of normalised motion [T, B, dof], T >= 2. Throws Error for any other shape.
   Var operator()(const Var& motion) const {
     return logits_(mean(residual_block(block1_, attend(attention_, before_attention(motion)), true), 0));
   }
 
-  /// How much each of the T / 2 frames after Down takes from each, [B, T/2, T/2]; Error where there is none.
+  /// Attention weights [B, T/2, T/2] of the frames after pooling: row j is what frame j attends to. Throws
+  /// Error if the model has no attention.
   Var attention_map(const Var& motion) const {
-    require(attention_.has_value(), "the classifier was made without attention: there is no map of it");
+    require(attention_.has_value(), "the classifier was made without attention and has no attention map");
     return attention_->map(before_attention(motion));
   }
 

@@ -1,19 +1,21 @@
-// The critic of the attention WGAN-GP (Malek-Podjaski & Deligianni; SPEC 5): a score for a prior and the
-// future that is said to follow it, joined in time.
+// The critic of the attention WGAN-GP (Malek-Podjaski & Deligianni).
 #pragma once
 #include "motiongan/networks/attention_block.hpp"
 
 namespace motiongan {
 
 struct AttentionCriticOptions {
-  std::size_t dof = 0;       ///< numbers of a pose
-  std::size_t hidden = 256;  ///< C
-  std::size_t classes = 0;   ///< Y where the critic is told the class; 0: it is not, as in the paper
-  bool attention = true;
+  std::size_t dof = 0;       ///< values per pose
+  std::size_t hidden = 256;  ///< C, hidden width
+  std::size_t classes = 0;   ///< Y for a class-conditional critic; 0: unconditional, as in the paper
+  bool attention = true;     ///< false: the paper's ablation
 };
 
+/// Scores a prior and its future, concatenated in time: `encode` -> `block.0` -> pooling -> `attention` ->
+/// `block.1` -> pooling -> `block.2` -> ReLU -> mean over frames -> `score`.
 class AttentionCritic {
  public:
+  /// Throws Error if dof or hidden is 0.
   AttentionCritic(Initializer init, const AttentionCriticOptions& options) : options_(options) {
     require(options.dof > 0 && options.hidden > 0, "AttentionCritic: dof and hidden must be positive");
     encode_ = Conv1d(init, options.dof + options.classes, options.hidden, 3);
@@ -26,16 +28,18 @@ class AttentionCritic {
 
   const AttentionCriticOptions& options() const { return options_; }
 
-  /// One score per sample, [B], of motion [2T, B, dof]; `classes` [B, Y] where the options ask for them.
+  /// One score per sample, [B], of normalised motion [2T, B, dof], at least 4 frames. `classes` [B, Y]
+  /// (one-hot) are required if the options give a number of classes, and not accepted otherwise. Throws Error
+  /// for any other shape.
   Var operator()(const Var& motion, const Var& classes = {}) const {
     const Var h = residual_block_down(block1_, attend(attention_, before_attention(motion, classes)));
     return reshape(score_(mean(residual_block(block2_, h, true), 0)), {motion.dim(1)});
   }
 
-  /// How much each of the T frames after the first Down takes from each, [B, T, T]; Error where there is
-  /// none.
+  /// Attention weights [B, T, T] of the T frames after the first pooling: row j is what frame j attends to.
+  /// Throws Error if the model has no attention.
   Var attention_map(const Var& motion, const Var& classes = {}) const {
-    require(attention_.has_value(), "the critic was made without attention: there is no map of it");
+    require(attention_.has_value(), "the critic was made without attention and has no attention map");
     return attention_->map(before_attention(motion, classes));
   }
 

@@ -1,20 +1,22 @@
-// The generator of the attention WGAN-GP (Malek-Podjaski & Deligianni; SPEC 5): one second of motion and a
-// class in, the next second out.
+// The generator of the attention WGAN-GP (Malek-Podjaski & Deligianni).
 #pragma once
 #include "motiongan/networks/attention_block.hpp"
 
 namespace motiongan {
 
 struct AttentionGeneratorOptions {
-  std::size_t dof = 0;        ///< numbers of a pose
-  std::size_t classes = 0;    ///< Y
-  std::size_t hidden = 256;   ///< C
-  std::size_t noise_dim = 0;  ///< numbers of noise beside the class; the paper has none
+  std::size_t dof = 0;        ///< values per pose
+  std::size_t classes = 0;    ///< Y, the number of classes
+  std::size_t hidden = 256;   ///< C, hidden width
+  std::size_t noise_dim = 0;  ///< noise values per sample, next to the class; the paper has none
   bool attention = true;      ///< false: the paper's ablation
 };
 
+/// Maps one second of motion and a class to the next second: `encode` -> `block.0` -> `attention` ->
+/// `block.1` -> ReLU -> `decode`.
 class AttentionGenerator {
  public:
+  /// Throws Error if dof, classes or hidden is 0.
   AttentionGenerator(Initializer init, const AttentionGeneratorOptions& options) : options_(options) {
     require(options.dof > 0 && options.classes > 0 && options.hidden > 0,
             "AttentionGenerator: dof, classes and hidden must be positive");
@@ -27,20 +29,21 @@ class AttentionGenerator {
 
   const AttentionGeneratorOptions& options() const { return options_; }
 
-  /// The motion [T, B, dof] that follows the prior [T, B, dof] of class [B, Y] (one-hot), with noise
-  /// [B, noise_dim] where the options ask for some.
+  /// The future [T, B, dof] of a normalised prior [T, B, dof] for `classes` [B, Y] (one-hot). `noise` [B,
+  /// noise_dim] is required if noise_dim > 0, and not accepted otherwise. Throws Error for any other shape.
   Var operator()(const Var& prior, const Var& classes, const Var& noise = {}) const {
     return decode_(
         residual_block(block1_, attend(attention_, before_attention(prior, classes, noise)), true));
   }
 
-  /// How much each frame takes from each, [B, T, T]; Error where there is no attention.
+  /// Attention weights [B, T, T]: row j is what frame j attends to. Throws Error if the model has no
+  /// attention.
   Var attention_map(const Var& prior, const Var& classes, const Var& noise = {}) const {
-    require(attention_.has_value(), "the generator was made without attention: there is no map of it");
+    require(attention_.has_value(), "the generator was made without attention and has no attention map");
     return attention_->map(before_attention(prior, classes, noise));
   }
 
-  /// The layers, for those who run them in their own way.
+  /// The layers, for code that runs them without a graph (AttentionRollout). `i` of block() is 0 or 1.
   const Conv1d& encode() const { return encode_; }
   const Residual& block(std::size_t i) const { return i == 0 ? block0_ : block1_; }
   const std::optional<SelfAttention>& attention() const { return attention_; }
@@ -57,12 +60,12 @@ class AttentionGenerator {
  private:
   Var before_attention(const Var& prior, const Var& classes, const Var& noise) const {
     require(prior.value().rank() == 3 && prior.dim(2) == options_.dof && classes.dim(1) == options_.classes,
-            "AttentionGenerator: a prior ", prior.shape(), " and classes ", classes.shape(),
+            "AttentionGenerator: prior ", prior.shape(), " and classes ", classes.shape(),
             ", expected [frames, "
             "batch, ",
             options_.dof, "] and [batch, ", options_.classes, "]");
     require(noise.empty() ? options_.noise_dim == 0 : noise.dim(1) == options_.noise_dim,
-            "AttentionGenerator: noise of ", noise.empty() ? 0 : noise.dim(1), " numbers, expected ",
+            "AttentionGenerator: noise of ", noise.empty() ? 0 : noise.dim(1), " values, expected ",
             options_.noise_dim);
     return residual_block(block0_, encode_(with_constant_channels(
                                        prior, noise.empty() ? classes : concatenate({classes, noise}, 1))));

@@ -1,14 +1,15 @@
-// The attention generator second after second, without a graph (SPEC 5: autoregressive generation).
+// Autoregressive rollout of the attention generator, without an autograd graph.
 #pragma once
 #include "motiongan/networks/attention_generator.hpp"
 
 namespace motiongan {
 
-/// Makes the frames that follow a prior, as AttentionGenerator does, equal to rounding. A sample's motion
-/// does not depend on which others are in the batch, bit for bit on the native engine of gemm().
+/// Computes what AttentionGenerator computes, equal to rounding, for inference. A sample's motion does not
+/// depend on the rest of the batch, bit for bit with gemm()'s native engine.
 ///
-/// The generator's weights are read when this is made; after a step of training make it anew. Memory is taken
-/// at the first step and kept as long as frames and batch stay: a step then allocates only its result.
+/// The weights are copied at construction: construct a new rollout after a training step. Buffers are
+/// allocated by the first step and kept as long as frames and batch size stay the same; a step then allocates
+/// only its result.
 class AttentionRollout {
  public:
   explicit AttentionRollout(const AttentionGenerator& generator)
@@ -29,7 +30,7 @@ class AttentionRollout {
           concatenate({attention->query.weight, attention->key.weight, attention->value.weight}, 1),
           concatenate({attention->query.bias, attention->key.bias, attention->value.bias}, 0));
       const auto scaled = [&](const Var& v) { return v * broadcast_to(attention->gamma, v.shape()); };
-      // [inner, hidden]: the kernel goes along the hidden channels.
+      // Transposed to [inner, hidden]: the kernel reads along the hidden channels.
       const std::vector<double> by_row = scaled(attention->out.weight).value().to_host<double>();
       std::vector<double> turned(by_row.size());
       const std::size_t hidden = options_.hidden;
@@ -41,9 +42,10 @@ class AttentionRollout {
 
   const AttentionGeneratorOptions& options() const { return options_; }
 
-  /// The next frames [T, B, dof] after a prior [T, B, dof] for classes [B, Y], with noise [B, noise_dim]
-  /// where the generator has some. Feed the result back for motion of any length; classes may change on the
-  /// way.
+  /// The future [T, B, dof] of a normalised prior [T, B, dof] for `classes` [B, Y] (one-hot). `noise` [B,
+  /// noise_dim] is required if the generator takes noise, and not accepted otherwise. Pass the result back as
+  /// the next prior for motion of any length; classes may change between steps. Throws Error for any other
+  /// shape.
   Tensor step(const Tensor& prior, const Tensor& classes, const Tensor& noise = {}) {
     check(prior, classes, noise);
     reserve(prior.dim(0), prior.dim(1));
@@ -64,9 +66,9 @@ class AttentionRollout {
   }
 
  private:
-  /// A convolution's product but for where it reads and writes. `weight` is [taps, out, in].
+  /// A convolution as a matrix product, without its input and output. `weight` is [taps, out, in].
   GemmCall convolution(const Var& weight, const Var& bias) const {
-    const auto kept = [&](const Var& v) {  // what the caller's optimiser does not change
+    const auto kept = [&](const Var& v) {  // a copy that the caller's optimizer does not change
       Tensor copy(context_, v.shape());
       detail::copy_tensor(v.value(), copy);
       return copy;
@@ -83,17 +85,17 @@ class AttentionRollout {
 
   void check(const Tensor& prior, const Tensor& classes, const Tensor& noise) const {
     require(prior.rank() == 3 && prior.dim(2) == options_.dof && prior.size() > 0,
-            "AttentionRollout: a prior ", prior.shape(), ", expected [frames, batch, ", options_.dof, "]");
+            "AttentionRollout: prior ", prior.shape(), ", expected [frames, batch, ", options_.dof, "]");
     require(classes.shape() == Shape{prior.dim(1), options_.classes}, "AttentionRollout: classes ",
             classes.shape(), ", expected ", Shape{prior.dim(1), options_.classes});
     require(
         noise.empty() ? options_.noise_dim == 0 : noise.shape() == Shape{prior.dim(1), options_.noise_dim},
         "AttentionRollout: noise ", noise.shape(), ", expected ", Shape{prior.dim(1), options_.noise_dim},
-        options_.noise_dim == 0 ? ": the generator takes none, leave it out" : "");
+        options_.noise_dim == 0 ? ": the generator takes no noise, omit it" : "");
   }
 
-  /// Memory for this many frames and samples. What a convolution of three taps reads has a frame of zeros
-  /// before and after, so that every frame is one product with the same taps.
+  /// Buffers for this number of frames and samples. The inputs of 3-tap convolutions are padded with a zero
+  /// frame at either end, so that all frames use the same taps in one product.
   void reserve(std::size_t frames, std::size_t batch) {
     if (frames == frames_ && batch == batch_) return;
     const std::size_t hidden = options_.hidden, rows = frames * batch;
@@ -115,14 +117,14 @@ class AttentionRollout {
       call.rectified = rectified_, call.rectified_offset = batch * hidden;
     };
     rectify(encode_);
-    if (inner_ == 0) rectify(second_[0]);  // else the attention does
+    if (inner_ == 0) rectify(second_[0]);  // with attention, its kernel does
     for (GemmCall& call : first_) place(call, rectified_, between_, batch * hidden);
     place(second_[0], between_, other_, 0);
     add(second_[0], state_);
     if (inner_ > 0) {
       parts_to_ = Tensor(context_, {rows, 3 * inner_});
       place(parts_, other_, parts_to_, 0);
-      // Pieces of a sample's frames, so that few samples keep all cores busy.
+      // A sample's frames are split into pieces, so that a small batch still keeps all cores busy.
       const std::size_t groups = 4 * context_.device().compute_units;
       pieces_ = std::clamp<std::size_t>((groups + batch - 1) / batch, 1, frames);
       scratch_ = Tensor(context_, {pieces_, batch, frames + inner_});

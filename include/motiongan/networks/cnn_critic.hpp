@@ -1,31 +1,41 @@
-// The CNN critic of DVGAN with dense validation at every time scale (Lin & Amer, eq. 6; SPEC 3).
+// The CNN critic of DVGAN, with dense validation (Lin & Amer, eq. 6).
 #pragma once
 #include <optional>
 #include <string_view>
 
+#include "motiongan/core/fields.hpp"
 #include "motiongan/networks/cnn_trunk.hpp"
 #include "motiongan/networks/validate.hpp"
 #include "motiongan/nn/text_encoder.hpp"
 
 namespace motiongan {
 
-/// Which time scales the critic judges: all of them, every second one, or only the coarsest.
+/// Which time scales the critic scores: all levels, the even ones, or only the coarsest.
 enum class Validation { dense, mod2, final };
-/// How the levels' scores are weighted: exp(w_i), or a softmax over w.
+constexpr NameTable<Validation, 3> enum_names(Validation) {
+  return {{{Validation::dense, "dense"}, {Validation::mod2, "mod2"}, {Validation::final, "final"}}};
+}
+/// Weights of the levels' scores: exp(w_i), or a softmax over w.
 enum class LevelWeights { exp, softmax };
+constexpr NameTable<LevelWeights, 2> enum_names(LevelWeights) {
+  return {{{LevelWeights::exp, "exp"}, {LevelWeights::softmax, "softmax"}}};
+}
 
 struct CnnCriticOptions {
-  std::size_t vocabulary = 0;  ///< words
-  std::size_t dof = 0;         ///< numbers of a pose, M
-  std::size_t frames = 32;     ///< N, a power of two
-  std::size_t hidden = 256;    ///< k
-  std::size_t taps = 3;        ///< of the convolutions: 3 or 5
+  std::size_t vocabulary = 0;  ///< number of words
+  std::size_t dof = 0;         ///< M, values per pose
+  std::size_t frames = 32;     ///< N, frames per window; a power of two
+  std::size_t hidden = 256;    ///< k, hidden width
+  std::size_t taps = 3;        ///< kernel size of the convolutions: 3 or 5
   Validation validation = Validation::dense;
   LevelWeights level_weights = LevelWeights::exp;
 };
 
+/// Scores motion against a text. `encode` and residual steps halve the frames level by level; every validated
+/// level has its own Validate module, and the result is the weighted sum of their scores.
 class CnnCritic {
  public:
+  /// Throws Error if a size is 0 or frames is not a power of two.
   CnnCritic(Initializer init, const CnnCriticOptions& options)
       : options_(options), levels_(levels_of(options.frames)) {
     require(options.vocabulary > 0 && options.dof > 0 && options.hidden > 0,
@@ -39,16 +49,17 @@ class CnnCritic {
       validate_.back() = Validate(init, options.hidden);
       ++validated;
     }
-    // exp(w) starts convex: every level counts 1/n.
+    // exp(w) is 1/n at the start: the mean of the levels' scores.
     level_weight_ = init.constant({validated}, -std::log(static_cast<double>(validated)));
   }
 
   const CnnCriticOptions& options() const { return options_; }
 
-  /// [B, k]; computed once a step, it serves real, fake and mixed motion alike.
+  /// Text encoding [B, k]. Compute it once per step and share it between real, fake and interpolated motion.
   Var encode_text(const Sentences& text) const { return text_(text); }
 
-  /// One score per sample, [B], of motion [N, B, M] with encoded text [B, k].
+  /// One score per sample, [B], of normalised motion [N, B, M] and the text encoding [B, k]. Throws Error for
+  /// another N or M.
   Var operator()(const Var& motion, const Var& h_txt) const {
     require(motion.dim(0) == options_.frames && motion.dim(2) == options_.dof, "CnnCritic: motion ",
             motion.shape(), ", expected [", options_.frames, ", batch, ", options_.dof, "]");
@@ -92,7 +103,7 @@ class CnnCritic {
   std::size_t levels_;
   TextEncoder text_;
   CnnTrunk trunk_;
-  std::vector<Validate> validate_;  // by level; unused where a level is not validated
+  std::vector<Validate> validate_;  // by level; empty for levels that are not validated
   Var level_weight_;
 };
 

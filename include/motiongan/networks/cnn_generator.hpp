@@ -1,4 +1,4 @@
-// The CNN generator of DVGAN (Lin & Amer, eq. 4; SPEC 2).
+// The CNN generator of DVGAN (Lin & Amer, eq. 4).
 #pragma once
 #include "motiongan/networks/plot_layer.hpp"
 #include "motiongan/networks/residual.hpp"
@@ -8,18 +8,19 @@
 namespace motiongan {
 
 struct CnnGeneratorOptions {
-  std::size_t vocabulary = 0;  ///< words
-  std::size_t dof = 0;         ///< numbers of a pose, M
-  std::size_t frames = 32;     ///< N, a power of two
-  std::size_t hidden = 256;    ///< k
-  std::size_t taps = 3;        ///< of the convolutions: 3 or 5
-  bool final_cut = true;       ///< make 2N frames and keep N of them
+  std::size_t vocabulary = 0;  ///< number of words
+  std::size_t dof = 0;         ///< M, values per pose
+  std::size_t frames = 32;     ///< N, frames per window; a power of two
+  std::size_t hidden = 256;    ///< k, hidden width
+  std::size_t taps = 3;        ///< kernel size of the convolutions: 3 or 5
+  bool final_cut = true;       ///< generate 2N frames and keep N consecutive ones
 };
 
-/// From coarse to fine: level i has 2^i frames and noise of its own; each level doubles the frames of the one
-/// before.
+/// Generates motion from coarse to fine: level i has 2^i frames and its own noise, and each level doubles the
+/// number of frames.
 class CnnGenerator {
  public:
+  /// Throws Error if a size is 0 or frames is not a power of two.
   CnnGenerator(Initializer init, const CnnGeneratorOptions& options)
       : options_(options), levels_(levels_of(options.frames) + options.final_cut) {
     require(options.vocabulary > 0 && options.dof > 0 && options.hidden > 0,
@@ -31,17 +32,19 @@ class CnnGenerator {
   }
 
   const CnnGeneratorOptions& options() const { return options_; }
-  /// Noise levels are 0 .. levels(), of 2^i frames each.
+  /// The finest level: noise has levels 0 .. levels(), with 2^i frames at level i.
   std::size_t levels() const { return levels_; }
 
-  /// Where each sample's N frames are cut from the 2N made: uniform in 0..N. Empty without final cut.
+  /// First of the N frames that the final cut keeps of 2N, per sample: uniform in 0..N, both included. Empty
+  /// without final cut.
   Indices cuts(const Context& context, const RandomKey& key, std::size_t batch) const {
     return options_.final_cut ? random_integers(context, key.with(RandomStream::cut), batch, 0, options_.frames + 1)
                               : Indices();
   }
 
-  /// z_i [2^i, B, k] for every level, keyed by sample: a sample's noise does not depend on its batch. With
-  /// final cut, the last level's is made only for the frames that the cut needs, [N + 2*reach, B, k].
+  /// Standard normal noise z_i [2^i, B, k] for every level, keyed by sample: a sample's noise does not depend
+  /// on its batch. With final cut, the last level holds only the frames that the cut needs,
+  /// [N + 2 * (taps / 2), B, k].
   std::vector<Var> noise(const Context& context, const RandomKey& key, std::size_t batch,
                          const Indices& cut) const {
     std::vector<Var> z;
@@ -56,17 +59,18 @@ class CnnGenerator {
     return z;
   }
 
-  /// Of noise for all 2N frames of the last level, what the final cut needs: for callers with noise of their
-  /// own.
+  /// The frames that the final cut needs of noise z [2N, B, k] for the last level, for callers that supply
+  /// their own noise.
   Var cut_noise(const Var& z, const Indices& cut) const {
     return shift_frames(z, cut, kept_frames(), {.first = -static_cast<int>(reach())});
   }
 
-  /// Motion [N, B, M] for a batch of sentences; `cut` as cuts() gives it, z as noise() does (or with all 2N
-  /// frames of the last level).
+  /// Normalised motion [N, B, M] for a batch of sentences, from z as returned by noise() (or with the last
+  /// level reduced by cut_noise()) and `cut` as returned by cuts(). Throws Error for another number of
+  /// levels.
   Var operator()(const Sentences& text, const std::vector<Var>& z, const Indices& cut) const {
-    require(z.size() == levels_ + 1, "CnnGenerator: noise for ", z.size(), " levels, ", levels_ + 1,
-            " expected");
+    require(z.size() == levels_ + 1, "CnnGenerator: noise for ", z.size(), " levels, expected ",
+            levels_ + 1);
     const Var h_txt = text_(text);
     Var h = plot_[0](h_txt, z[0]);
     if (levels_ == 0) return decode_(h);
@@ -86,15 +90,15 @@ class CnnGenerator {
   }
 
  private:
-  /// Frames on either side of the cut that the last convolution sees.
+  /// Frames on either side of the cut that the last convolution reads.
   std::size_t reach() const { return options_.taps / 2; }
   std::size_t kept_frames() const { return options_.frames + 2 * reach(); }
 
-  /// decode(h_L) = decode(Up(h) + conv2(x)), computed as Up(decode(h)) + (decode conv2)(x): both are linear,
-  /// and a pose has fewer numbers than a hidden state, so the product of the two weights saves most of the
-  /// finest level's arithmetic. With final cut only the frames that it keeps are computed, and the reach of
-  /// the convolution. A frame before 0 or from 2N on is zero padding: there the sum under the ReLU is made
-  /// very negative.
+  /// decode(h_L) = decode(Up(h) + conv2(x)), computed as Up(decode(h)) + (decode conv2)(x): both layers are
+  /// linear, and a pose has fewer values than a hidden state, so multiplying their weights saves most of the
+  /// finest level's arithmetic. With final cut, only the frames it keeps and those the convolution reads
+  /// around them are computed. Frames outside 0..2N-1 are zero padding: a large negative number before the
+  /// ReLU makes them zero.
   Var decoded_last_level(const Var& h, const Var& h_txt, const Var& z, const Indices& cut) const {
     constexpr double far_below = -1e30;
     const std::size_t frames = 2 * h.dim(0), k = options_.hidden, dof = options_.dof;
@@ -125,7 +129,7 @@ class CnnGenerator {
   std::size_t levels_;
   TextEncoder text_;
   std::vector<PlotLayer> plot_;
-  std::vector<Residual> residual_;  // residual_[i - 1] leads to level i
+  std::vector<Residual> residual_;  // residual_[i - 1] produces level i
   Conv1d decode_;
 };
 

@@ -1,34 +1,36 @@
-// The ranker with the CNN critic's trunk (Lin & Amer, eq. 8; SPEC 7).
+// The CNN ranker of DVGAN, which has the CNN critic's trunk (Lin & Amer, eq. 8).
 #pragma once
 #include "motiongan/networks/cnn_trunk.hpp"
 #include "motiongan/nn/text_encoder.hpp"
 
 namespace motiongan {
 
-/// Sizes of either ranker.
+/// Sizes of either ranker, CNN or RNN.
 struct RankerSizes {
-  std::size_t vocabulary = 0;  ///< words
-  std::size_t dof = 0;         ///< numbers of a pose, M
-  std::size_t frames = 32;     ///< N; of the CNN a power of two
-  std::size_t hidden = 1024;   ///< k
-  std::size_t taps = 3;        ///< of the CNN's convolutions: 3 or 5
+  std::size_t vocabulary = 0;  ///< number of words
+  std::size_t dof = 0;         ///< M, values per pose
+  std::size_t frames = 32;     ///< N, frames per window; a power of two for the CNN
+  std::size_t hidden = 1024;   ///< k, hidden width
+  std::size_t taps = 3;        ///< kernel size of the CNN's convolutions: 3 or 5
 };
 
-/// Embeds a motion by its coarsest time scale.
+/// Embeds texts and motions in one space; a motion's embedding is its coarsest level.
 class CnnRanker {
  public:
+  /// Throws Error if a size is 0 or frames is not a power of two of at least 2.
   CnnRanker(Initializer init, const RankerSizes& sizes) : sizes_(sizes) {
     require(sizes.vocabulary > 0 && sizes.dof > 0 && sizes.hidden > 0,
             "CnnRanker: vocabulary, dof and hidden must be positive");
-    require(sizes.frames >= 2, "CnnRanker: windows of ", sizes.frames, " frames, expected 2 or more");
+    require(sizes.frames >= 2, "CnnRanker: windows of ", sizes.frames, " frames, expected at least 2");
     text_ = TextEncoder(init, sizes.vocabulary, sizes.hidden);
     trunk_ = CnnTrunk(init, sizes.dof, sizes.frames, sizes.hidden, sizes.taps);
   }
 
-  /// [K, k] of K descriptions.
+  /// Embeddings [K, k] of K descriptions.
   Var describe(const Sentences& text) const { return text_(text); }
 
-  /// h_0, [B, k], of motion [N, B, M]. Not of length 1 yet.
+  /// The embedding h_0, [B, k], of normalised motion [N, B, M]; not normalised to unit length. Throws Error
+  /// for another N or M.
   Var embed(const Var& motion) const {
     require(motion.value().rank() == 3 && motion.dim(0) == sizes_.frames && motion.dim(2) == sizes_.dof,
             "CnnRanker: motion ", motion.shape(), ", expected [", sizes_.frames, ", batch, ", sizes_.dof,

@@ -1,22 +1,19 @@
-// The way of the CNN critic and the CNN ranker from a motion to its coarsest time scale (Lin & Amer, eq. 6
-// and 8; SPEC 3, 7).
+// The convolutional trunk shared by DVGAN's CNN critic and CNN ranker (Lin & Amer, eq. 6 and 8).
 #pragma once
 #include "motiongan/networks/residual.hpp"
 #include "motiongan/ops/matmul.hpp"
 
 namespace motiongan {
 
-/// `encode`, then residual steps, each of which halves the frames: level `levels()` has N of them, level 0
-/// one.
+/// `encode`, then residual steps that halve the frames: level levels() has N frames, level 0 has one.
 ///
-/// The finest level is encode(motion), which is linear and so are the layers that see it: they take the
-/// motion itself by the product of their weights with encode's. A pose has fewer numbers than a hidden state,
-/// and the largest of all activations need not exist. A channel of ones carries encode's bias, also through
-/// the zero padding.
+/// encode() and the layers that read its result are linear, so those layers are applied to the motion itself,
+/// with their weights multiplied by encode's. A pose has fewer values than a hidden state, and the largest
+/// activation is never stored. A channel of ones carries encode's bias, through the zero padding too.
 class CnnTrunk {
  public:
   CnnTrunk() = default;
-  /// N is a power of two.
+  /// Throws Error if frames (N) is not a power of two.
   CnnTrunk(Initializer& init, std::size_t dof, std::size_t frames, std::size_t hidden, std::size_t taps_count)
       : encode_(init, dof, hidden) {
     const std::size_t levels = levels_of(frames);
@@ -25,25 +22,26 @@ class CnnTrunk {
 
   std::size_t levels() const { return residual_.size(); }
 
-  /// The motion [N, B, M] with a channel of ones, [N, B, M + 1]: what encoding() applies to.
+  /// The motion [N, B, M] with a channel of ones appended, [N, B, M + 1]: the input that encoding() expects.
   static Var with_ones(const Var& motion) {
     return concatenate({motion, ones(motion.context(), {motion.dim(0), motion.dim(1), 1})}, 2);
   }
 
-  /// Weight and bias of `encode` side by side, [k, M + 1].
+  /// Weight and bias of `encode`, concatenated: [k, M + 1].
   Var encoding() const {
     const std::size_t out = encode_.weight.dim(1), in = encode_.weight.dim(2);
     return concatenate({reshape(encode_.weight, {out, in}), reshape(encode_.bias, {out, 1})}, 1);
   }
 
-  /// The weights of `conv` after encoding(): [taps, out, M + 1].
+  /// The weights of `conv` composed with encoding(): [taps, out, M + 1].
   static Var after(const Conv1d& conv, const Var& encoding) {
     const std::size_t count = conv.weight.dim(0), out = conv.weight.dim(1), k = conv.weight.dim(2);
     return reshape(matmul(reshape(conv.weight, {count * out, k}), encoding), {count, out, encoding.dim(1)});
   }
 
-  /// From level i + 1 to level i: Down(h) + conv2(ReLU(Down(conv1(h)))), half the frames. From the finest
-  /// level, h is with_ones(motion), and `encoding` what is yet to be applied to it.
+  /// Level i from level i + 1, with half the frames: Down(h) + conv2(ReLU(Down(conv1(h)))), Down being the
+  /// mean of pairs of frames. At the finest level h is with_ones(motion), to which `encoding` is still to be
+  /// applied.
   Var halve(std::size_t i, const Var& h, const Var& encoding) const {
     const Residual& r = residual_[i];
     const bool finest = i + 1 == levels();
@@ -59,7 +57,7 @@ class CnnTrunk {
     return r.conv2(inner, {.residual = down});
   }
 
-  /// `encode` and `residual.{i}`, to stand beside what else its owner has.
+  /// Adds `encode` and `residual.{i}` to the owner's list, without a prefix.
   void list_parameters(ParameterList& list) {
     list.add_module("encode", encode_);
     for (std::size_t i = 0; i < levels(); ++i) list.add_module("residual." + std::to_string(i), residual_[i]);
@@ -67,7 +65,7 @@ class CnnTrunk {
 
  private:
   Conv1d encode_;
-  std::vector<Residual> residual_;  // residual_[i] leads from level i + 1 to level i
+  std::vector<Residual> residual_;  // residual_[i] computes level i from level i + 1
 };
 
 }  // namespace motiongan

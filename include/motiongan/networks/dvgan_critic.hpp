@@ -1,35 +1,55 @@
-// Either critic of DVGAN, by option.
+// DVGAN's critic, CNN or RNN by option.
 #pragma once
 #include <variant>
 
+#include "motiongan/core/fields.hpp"
 #include "motiongan/networks/cnn_critic.hpp"
 #include "motiongan/networks/rnn_critic.hpp"
 
 namespace motiongan {
 
-/// The CNN judges windows of N frames at every time scale, the RNN poses and their changes.
+/// The CNN scores windows of N frames at several time scales, the RNN scores poses and frame differences.
 enum class CriticKind { cnn, rnn };
+constexpr NameTable<CriticKind, 2> enum_names(CriticKind) {
+  return {{{CriticKind::cnn, "cnn"}, {CriticKind::rnn, "rnn"}}};
+}
 
 struct DvganCriticOptions {
   CriticKind critic = CriticKind::cnn;
   Validation validation = Validation::dense;       ///< of the CNN critic
   LevelWeights level_weights = LevelWeights::exp;  ///< of the CNN critic
   DiffInput diff_input = DiffInput::hidden;        ///< of the RNN critic
+
+  void list_fields(FieldList& list) {
+    list.add(critic, {.key = "critic",
+                      .help = "cnn: scores several time scales; rnn: scores poses and frame differences",
+                      .group = "Model"});
+    list.add(validation, {.key = "validation",
+                          .help = "time scales that the CNN critic scores: all, every second, the coarsest",
+                          .group = "Model"});
+    list.add(level_weights, {.key = "level_weights",
+                             .help = "how the CNN critic weights the scores of its time scales",
+                             .group = "Model"});
+    list.add(diff_input, {.key = "diff_input",
+                          .help = "input of the RNN critic's second score: LSTM states or differences",
+                          .group = "Model"});
+  }
 };
 
-/// What both critics have in common.
+/// A CnnCritic or an RnnCritic behind one interface.
 class DvganCritic {
  public:
-  /// Sizes as CnnCriticOptions has them; `taps` counts for the CNN alone.
+  /// `sizes` gives the sizes of either critic; taps and frames apply to the CNN only. Throws Error as the
+  /// critic's own constructor does.
   DvganCritic(const Initializer& init, const CnnCriticOptions& sizes, const DvganCriticOptions& options)
       : critic_(make(init, sizes, options)) {}
 
-  /// [B, k]; computed once a step, it serves real, fake and mixed motion alike.
+  /// Text encoding [B, k]. Compute it once per step and share it between real, fake and interpolated motion.
   Var encode_text(const Sentences& text) const {
     return std::visit([&](const auto& critic) { return critic.encode_text(text); }, critic_);
   }
 
-  /// One score per sample, [B], of motion [N, B, M] with encoded text [B, k].
+  /// One score per sample, [B], of normalised motion [N, B, M] and the text encoding [B, k].
   Var operator()(const Var& motion, const Var& h_txt) const {
     return std::visit([&](const auto& critic) { return critic(motion, h_txt); }, critic_);
   }

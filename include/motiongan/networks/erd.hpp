@@ -1,5 +1,5 @@
 // Encoder-recurrent-decoder (Fragkiadaki, Levine, Felsen & Malik, "Recurrent network models for human
-// dynamics", 2015; SPEC 7.7): a baseline of motion completion.
+// dynamics", 2015): a baseline for motion completion.
 #pragma once
 #include <array>
 
@@ -8,14 +8,15 @@
 namespace motiongan {
 
 struct ErdOptions {
-  std::size_t dof = 0;        ///< numbers of a pose
-  std::size_t hidden = 1000;  ///< of the LSTM; the linear layers have half as many, the last but one a tenth
+  std::size_t dof = 0;        ///< values per pose
+  std::size_t hidden = 1000;  ///< LSTM width; linear layers have half of it, the last hidden one a tenth
 };
 
 /// `encode.0` Linear (ReLU) -> `encode.1` Linear -> two layers `lstm` -> `decode.0` Linear (ReLU) ->
-/// `decode.1` Linear (ReLU) -> `decode.2` Linear, which tells the next pose.
+/// `decode.1` Linear (ReLU) -> `decode.2` Linear = the next pose.
 class Erd {
  public:
+  /// Throws Error if dof is 0 or hidden below 2.
   Erd(Initializer init, const ErdOptions& options) : options_(options) {
     require(options.dof > 0 && options.hidden > 1, "Erd: dof must be positive and hidden above 1, found ",
             options.dof, " and ", options.hidden);
@@ -27,7 +28,7 @@ class Erd {
 
   const ErdOptions& options() const { return options_; }
 
-  /// What the model expects after each pose of x [T, B, dof], having seen those before it.
+  /// The next pose after each pose of x, [T, B, dof] -> [T, B, dof]; advances `state`.
   Var next_poses(const Var& x, LstmState& state) const {
     require(x.value().rank() == 3 && x.dim(2) == options_.dof, "Erd: poses ", x.shape(),
             ", expected [frames, batch, ", options_.dof, "]");
@@ -35,7 +36,7 @@ class Erd {
     return decode_[2](decode_[1](decode_[0](h, true), true));
   }
 
-  /// The `frames` poses [frames, B, dof] that follow the prefix [n, B, dof].
+  /// The `frames` poses [frames, B, dof] that follow the prefix [n, B, dof], fed with its own output.
   Var operator()(const Var& prefix, std::size_t frames) const { return closed_loop(*this, prefix, frames); }
 
   void list_parameters(ParameterList& list) {

@@ -1,4 +1,5 @@
-// The second paper's baseline (SPEC 5): an LSTM that reads the prior and goes on from its own output.
+// The LSTM baseline of the attention WGAN-GP (Malek-Podjaski & Deligianni): it reads the prior, then runs on
+// its own output.
 #pragma once
 #include "motiongan/networks/attention_block.hpp"
 #include "motiongan/nn/lstm.hpp"
@@ -6,14 +7,15 @@
 namespace motiongan {
 
 struct LstmBaselineOptions {
-  std::size_t dof = 0;       ///< numbers of a pose
-  std::size_t classes = 0;   ///< Y
-  std::size_t hidden = 256;  ///< k
+  std::size_t dof = 0;       ///< values per pose
+  std::size_t classes = 0;   ///< Y, the number of classes
+  std::size_t hidden = 256;  ///< k, hidden width
 };
 
-/// [pose, class] -> `frame` Linear -> `lstm`, one layer -> `out` Linear = the next pose.
+/// [pose, class] -> `frame` Linear -> one-layer `lstm` -> `out` Linear = the next pose.
 class LstmBaseline {
  public:
+  /// Throws Error if dof, classes or hidden is 0.
   LstmBaseline(Initializer init, const LstmBaselineOptions& options) : options_(options) {
     require(options.dof > 0 && options.classes > 0 && options.hidden > 0,
             "LstmBaseline: dof, classes and hidden must be positive");
@@ -24,15 +26,16 @@ class LstmBaseline {
 
   const LstmBaselineOptions& options() const { return options_; }
 
-  /// The `frames` poses [frames, B, dof] that follow the prior [T, B, dof] of class [B, Y] (one-hot).
+  /// The `frames` poses [frames, B, dof] that follow the prior [T, B, dof] for `classes` [B, Y] (one-hot).
+  /// Throws Error for any other shape or if frames is 0.
   Var operator()(const Var& prior, const Var& classes, std::size_t frames) const {
     require(prior.value().rank() == 3 && prior.dim(2) == options_.dof && classes.dim(1) == options_.classes,
-            "LstmBaseline: a prior ", prior.shape(), " and classes ", classes.shape(),
+            "LstmBaseline: prior ", prior.shape(), " and classes ", classes.shape(),
             ", expected [frames, batch, ", options_.dof, "] and [batch, ", options_.classes, "]");
-    require(frames > 0, "LstmBaseline: 0 frames were asked for");
+    require(frames > 0, "LstmBaseline: frames is 0, expected at least 1");
     const std::size_t k = options_.hidden, dof = options_.dof, batch = prior.dim(1);
     const Lstm::Layer& layer = lstm_.layers.front();
-    // `frame` and the LSTM's input weights are linear behind one another: one matrix [4k, dof + Y].
+    // `frame` and the LSTM's input weights are consecutive linear maps: one matrix [4k, dof + Y].
     const Var weight = matmul(layer.weight_ih, frame_.weight);
     const Var bias = layer.bias_ih + layer.bias_hh +
                      reshape(matmul(reshape(frame_.bias, {1, k}), layer.weight_ih, false, true), {4 * k});
@@ -44,8 +47,8 @@ class LstmBaseline {
     const Var first_h = last_state(states, 0), first_c = last_state(states, 1);
     Var h = reshape(first_h, {1, batch, k});
     if (frames > 1) {
-      // Its own output is linear in h: what is fed back is part of the recurrent weights, the rest is the
-      // same in every step. So all steps are one layer again.
+      // The output is linear in h, so feeding it back only changes the recurrent weights; the rest of the
+      // input is the same in every step. All steps are therefore one LSTM layer again.
       const Var by_pose = slice(weight, 1, 0, dof);  // [4k, dof]
       const Var recurrent = layer.weight_hh + matmul(by_pose, out_.weight);
       const Var fed = broadcast_to(out_.bias, {1, batch, dof});

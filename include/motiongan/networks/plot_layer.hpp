@@ -1,11 +1,12 @@
-// The plot: what is to happen at one moment, from the text and noise (SPEC 2, "PlotLayer").
+// The plot layer of DVGAN's generators: combines text and noise into the input of a frame (Lin & Amer, eq. 4
+// and 5).
 #pragma once
 #include "motiongan/nn/linear.hpp"
 
 namespace motiongan {
 
-/// PlotLayer(h_txt, z) = out(ReLU(noise(z) + h_txt)), size-1 convolutions; z is [T, B, k], h_txt [B, k], the
-/// result [T, B, k].
+/// out(ReLU(noise(z) + h_txt)) with size-1 convolutions: noise z [T, B, k] and text h_txt [B, k] give
+/// [T, B, k].
 struct PlotLayer {
   Conv1d noise, out;
 

@@ -1,4 +1,4 @@
-// The two convolutions of a residual step, and sizes that halve: shared by generator, critic and ranker.
+// The two convolutions of a residual step, and the number of levels: shared by generator, critic and ranker.
 #pragma once
 #include <bit>
 
@@ -6,6 +6,7 @@
 
 namespace motiongan {
 
+/// The convolutions of a residual step, k channels in and out; each owner says how they are combined.
 struct Residual {
   Conv1d conv1, conv2;
 
@@ -19,11 +20,11 @@ struct Residual {
   }
 };
 
-/// log2 of a number of frames; an Error that names the nearest powers of two when it is none.
+/// log2 of a number of frames. Throws Error, naming the nearest powers of two, if it is not a power of two.
 inline std::size_t levels_of(std::size_t frames) {
   if (frames >= 1 && std::has_single_bit(frames)) return static_cast<std::size_t>(std::countr_zero(frames));
   const std::size_t below = frames < 1 ? 1 : std::bit_floor(frames);
-  throw Error("the CNN models need a power of two of frames, ", frames, " was asked; the nearest are ", below,
+  throw Error("the CNN models need a power of two as frames, found ", frames, "; the nearest are ", below,
               " and ", frames < 1 ? 2 : 2 * below);
 }
 

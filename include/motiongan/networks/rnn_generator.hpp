@@ -1,4 +1,4 @@
-// The RNN generator of DVGAN (Lin & Amer, eq. 5; SPEC 2).
+// The RNN generator of DVGAN (Lin & Amer, eq. 5).
 #pragma once
 #include "motiongan/networks/plot_layer.hpp"
 #include "motiongan/nn/text_encoder.hpp"
@@ -7,17 +7,18 @@
 namespace motiongan {
 
 struct RnnGeneratorOptions {
-  std::size_t vocabulary = 0;  ///< words
-  std::size_t dof = 0;         ///< numbers of a pose, M
-  std::size_t frames = 64;     ///< N; any number
-  std::size_t hidden = 256;    ///< k
-  bool final_cut = false;      ///< make 2N frames and keep N of them
+  std::size_t vocabulary = 0;  ///< number of words
+  std::size_t dof = 0;         ///< M, values per pose
+  std::size_t frames = 64;     ///< N, frames per window; any number
+  std::size_t hidden = 256;    ///< k, hidden width
+  bool final_cut = false;      ///< generate 2N frames and keep N consecutive ones
 };
 
-/// Frame by frame: a two-layer LSTM sees the last pose and a plot of the text and of noise of this frame's
-/// own, and moves the pose on. It can go on for ever, and continue what is given.
+/// Generates motion frame by frame: a two-layer LSTM reads the previous pose and the frame's plot (text and
+/// noise), and its output is added to the pose. Motion can be of any length and can continue given frames.
 class RnnGenerator {
  public:
+  /// Throws Error if a size is 0.
   RnnGenerator(Initializer init, const RnnGeneratorOptions& options) : options_(options) {
     require(options.vocabulary > 0 && options.dof > 0 && options.hidden > 0 && options.frames > 0,
             "RnnGenerator: vocabulary, dof, frames and hidden must be positive");
@@ -37,26 +38,28 @@ class RnnGenerator {
   const PlotLayer& plot() const { return plot_; }
   const Linear& decode() const { return decode_; }
 
-  /// Frames that are made: N, or 2N of which the final cut keeps N.
+  /// Frames generated: N, or 2N with final cut.
   std::size_t frames_made() const { return options_.final_cut ? 2 * options_.frames : options_.frames; }
 
-  /// Where each sample's N frames are cut from the 2N made: uniform in 0..N. Empty without final cut.
+  /// First of the N frames that the final cut keeps of 2N, per sample: uniform in 0..N, both included. Empty
+  /// without final cut.
   Indices cuts(const Context& context, const RandomKey& key, std::size_t batch) const {
     return options_.final_cut ? random_integers(context, key.with(RandomStream::cut), batch, 0, options_.frames + 1)
                               : Indices();
   }
 
-  /// z [frames, B, k]: every frame of every sample has noise of its own, whatever the batch and the length.
+  /// Standard normal noise z [frames, B, k], keyed by sample and frame: it does not depend on the batch or
+  /// the length.
   Var noise(const Context& context, const RandomKey& key, std::size_t batch, std::size_t frames) const {
     return Var::constant(random_normal(context, key.with(RandomStream::noise), frames, batch, options_.hidden));
   }
 
-  /// The weights as rollout() takes them, with every pair of linear layers that stands behind one another
-  /// made one: `frame` and the half of the first LSTM layer that sees it, `plot.out` and the other half. The
-  /// products cost as much as some thousand samples' frames less: whoever samples often keeps them.
+  /// The weights as rollout() takes them, with consecutive linear layers multiplied into one: `frame` with
+  /// its half of the first LSTM layer's input weights, `plot.out` with the other half. The products are a
+  /// fixed cost, so keep the result when sampling repeatedly.
   struct Folded {
     RolloutWeights rollout;
-    Var plot, plot_bias;  ///< [1, 4k, k], [4k]: from the plot's hidden numbers to the first layer's gates
+    Var plot, plot_bias;  ///< [1, 4k, k], [4k]: from the plot's hidden units to the first layer's gates
   };
   Folded fold() const {
     const std::size_t k = options_.hidden;
@@ -76,23 +79,24 @@ class RnnGenerator {
         first.bias_ih + first.bias_hh + through(frame_.bias, by_frame) + through(plot_.out.bias, by_plot)};
   }
 
-  /// The first pose, [1, B, M], of encoded text [B, k] and the first frame's noise [1, B, k].
+  /// The first pose, [1, B, M], from the text encoding [B, k] and the first frame's noise [1, B, k].
   Var first_pose(const Var& h_txt, const Var& z) const { return decode_(initial_plot_(h_txt, z)); }
 
-  /// What plots do to the first layer's gates, [T, B, 4k], for noise [T, B, k].
+  /// The plots' contribution to the first layer's gates, [T, B, 4k], for noise [T, B, k].
   Var plot_gates(const Folded& folded, const Var& h_txt, const Var& z) const {
     const Var hidden = relu_of_sum(plot_.noise(z), reshape(h_txt, {1, h_txt.dim(0), h_txt.dim(1)}));
     return linear(hidden, folded.plot, {.bias = folded.plot_bias});
   }
 
-  /// Motion [T, B, M] for a batch of sentences and noise z [T, B, k]. With `seed` [n, B, M], 1 <= n <= T, the
-  /// motion begins with it and goes on from there (completion). `cut`, as cuts() gives it, keeps N of the
-  /// frames.
+  /// Normalised motion [T, B, M] for a batch of sentences and noise z [T, B, k]. With seed frames `seed`
+  /// [n, B, M], 1 <= n <= T, the motion begins with them and continues them (completion). `cut`, as returned
+  /// by cuts(), keeps N of the frames. Throws Error if z does not fit, or if both cut and seed are given.
   Var operator()(const Sentences& text, const Var& z, const Indices& cut = {}, const Var& seed = {}) const {
     require(z.value().rank() == 3 && z.dim(1) == text.batch && z.dim(2) == options_.hidden,
             "RnnGenerator: noise ", z.shape(), ", expected [frames, ", text.batch, ", ", options_.hidden,
             "]");
-    require(cut.empty() || seed.empty(), "RnnGenerator: a completion is not cut");
+    require(cut.empty() || seed.empty(),
+            "RnnGenerator: cut and seed are both given; a completion has no final cut");
     const std::size_t frames = z.dim(0);
     const Var h_txt = text_(text);
     Var given = seed.empty() ? first_pose(h_txt, slice(z, 0, 0, 1)) : seed;

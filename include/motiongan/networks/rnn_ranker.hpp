@@ -1,13 +1,15 @@
-// The ranker of mean pose and mean motion (Lin & Amer, eq. 9; SPEC 7).
+// The RNN ranker of DVGAN (Lin & Amer, eq. 9).
 #pragma once
 #include "motiongan/networks/cnn_ranker.hpp"
 #include "motiongan/networks/difference_lstm.hpp"
 
 namespace motiongan {
 
-/// Embeds a motion by the mean of its poses and the mean of an LSTM's states over their changes.
+/// Embeds texts and motions in one space; a motion's embedding combines the mean of its poses with the mean
+/// of an LSTM's states over its frame differences.
 class RnnRanker {
  public:
+  /// Throws Error if vocabulary, dof or hidden is 0.
   RnnRanker(Initializer init, const RankerSizes& sizes) : sizes_(sizes) {
     require(sizes.vocabulary > 0 && sizes.dof > 0 && sizes.hidden > 0,
             "RnnRanker: vocabulary, dof and hidden must be positive");
@@ -20,11 +22,12 @@ class RnnRanker {
     combine_ = Linear(init, 2 * k, k);
   }
 
-  /// [K, k] of K descriptions.
+  /// Embeddings [K, k] of K descriptions.
   Var describe(const Sentences& text) const { return text_(text); }
 
-  /// combine([h_d, h_a]), [B, k], of motion [N, B, M], N any number from 2 on. Not of length 1 yet. `pose`
-  /// and `motion` are linear: the means are taken before them, which is less to multiply.
+  /// The embedding combine([h_d, h_a]), [B, k], of normalised motion [N, B, M], N >= 2; not normalised to
+  /// unit length. `pose` and `motion` are linear, so the means are taken before them. Throws Error for
+  /// another shape.
   Var embed(const Var& motion) const {
     require(motion.value().rank() == 3 && motion.dim(0) >= 2 && motion.dim(2) == sizes_.dof,
             "RnnRanker: motion ", motion.shape(), ", expected [2 or more frames, batch, ", sizes_.dof, "]");

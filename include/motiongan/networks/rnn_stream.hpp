@@ -1,4 +1,4 @@
-// Many motions of one RNN generator in progress, frame by frame (SPEC 2: completion and streaming).
+// Streaming generation: many motions of one RNN generator, frame by frame.
 #pragma once
 #include <map>
 
@@ -6,22 +6,22 @@
 
 namespace motiongan {
 
-/// What a motion of a stream is made of. Its noise depends on seed and sample alone.
+/// The text and noise of a motion in a stream. The noise depends on seed and sample only.
 struct StreamStart {
-  std::vector<int> sentence;  ///< words by number
+  std::vector<int> sentence;  ///< word indices
   std::uint64_t seed = 1;
   std::uint32_t sample = 0;
 };
 
-/// Names a motion of a stream for as long as it is in there.
+/// Identifies a motion while it is in the stream.
 using StreamId = std::size_t;
 
-/// The states of any number of motions on the device. Each frame of all of them takes one step together; a
-/// motion does not depend on which others are there, bit for bit on the native engine of gemm(). The frames
-/// are those that the generator makes for the same noise at once.
+/// Holds the states of any number of motions on the device and advances them together. A motion does not
+/// depend on the others in the stream, bit for bit with gemm()'s native engine, and its frames are those that
+/// the generator makes in one call for the same noise.
 ///
-/// step() allocates nothing once the stream has seen as many frames at a time with as many motions. The
-/// generator's weights are taken as they are when the stream is made.
+/// step() allocates nothing once the stream has made that number of frames for that number of motions. The
+/// weights are read at construction: make a new stream after a training step.
 class RnnStream {
  public:
   explicit RnnStream(const RnnGenerator& generator)
@@ -37,15 +37,16 @@ class RnnStream {
   std::size_t size() const { return ids_.size(); }
   std::size_t dof() const { return dof_; }
 
-  /// Adds motions that begin with `prior` [frames, motions or 1, dof] (one serves them all), or with nothing.
-  /// They come out of the next step: the first frame, or the one that follows the prior.
+  /// Adds motions, with or without a prior. `prior` is [prior_frames, n, dof], normalised, with n either the
+  /// number of motions or 1 (shared by all). The next step returns their first frame, or the frame that
+  /// follows the prior. Throws Error for a prior of another size or an empty sentence.
   std::vector<StreamId> add(const std::vector<StreamStart>& starts, std::span<const float> prior = {},
                             std::size_t prior_frames = 0) {
     const NoGrad values_only;
     const std::size_t count = starts.size(), before = size();
     if (count == 0) return {};
     require(prior.size() == prior_frames * dof_ || prior.size() == prior_frames * count * dof_, "a prior of ",
-            prior_frames, " frames has ", prior.size(), " numbers, expected ", prior_frames * dof_, " or ",
+            prior_frames, " frames has ", prior.size(), " values, expected ", prior_frames * dof_, " or ",
             prior_frames * count * dof_);
     std::vector<std::vector<int>> sentences;
     for (const StreamStart& start : starts) sentences.push_back(start.sentence);
@@ -72,10 +73,10 @@ class RnnStream {
     return added;
   }
 
-  /// Takes a motion out; the others go on as if it had never been there.
+  /// Removes a motion; the others are not affected. Throws Error for an unknown id.
   void remove(StreamId id) {
     const std::size_t row = row_of(id), last = size() - 1;
-    if (row != last) {  // the last one takes its place
+    if (row != last) {  // the last row takes its place
       const auto move = [&](const Tensor& t, std::size_t first, std::size_t run) {
         detail::copy_runs(t, first + last * run, run, t, first + row * run, run, 1, run);
       };
@@ -92,7 +93,7 @@ class RnnStream {
     changed();
   }
 
-  /// Takes all motions out.
+  /// Removes all motions.
   void clear() {
     row_of_.clear();
     ids_.clear();
@@ -100,7 +101,8 @@ class RnnStream {
     ready_ = 0;
   }
 
-  /// Another text from the frame after next on: one frame is always made ahead.
+  /// Changes the text, from the frame after the next one: one frame is always computed ahead. Throws Error
+  /// for an unknown id or an empty sentence.
   void set_sentence(StreamId id, const std::vector<int>& sentence) {
     const NoGrad values_only;
     const std::size_t row = row_of(id);
@@ -108,16 +110,16 @@ class RnnStream {
     ready_ = 0;
   }
 
-  /// The motion's place among those of step()'s result; remove() moves the last one.
+  /// The motion's row in step()'s result; remove() moves the last row. Throws Error for an unknown id.
   std::size_t row_of(StreamId id) const {
     const auto found = row_of_.find(id);
-    require(found != row_of_.end(), "the stream has no motion with the id ", id,
+    require(found != row_of_.end(), "the stream has no motion with id ", id,
             "; it may have been removed");
     return found->second;
   }
   StreamId id_of(std::size_t row) const { return ids_.at(row); }
 
-  /// The next frames of all motions, normalised poses [frames, size(), dof]; valid until the next call.
+  /// The next frames of all motions, as normalised poses [frames, size(), dof]; valid until the next call.
   std::span<const float> step(std::size_t frames = 1) {
     const std::size_t batch = size(), total = frames * batch * dof_;
     if (total == 0) return {};
@@ -145,7 +147,7 @@ class RnnStream {
   std::size_t width() const { return dof_ + 2 * k_; }
   std::size_t slab() const { return capacity_ * width(); }
 
-  /// The prior as [frames, count, dof].
+  /// The prior as [frames, count, dof], repeated if it is shared.
   Tensor repeated(std::span<const float> prior, std::size_t frames, std::size_t count) const {
     if (prior.size() == frames * count * dof_) return Tensor::from(context_, {frames, count, dof_}, prior);
     std::vector<float> all;
@@ -156,7 +158,7 @@ class RnnStream {
     return Tensor::from(context_, {frames, count, dof_}, all);
   }
 
-  /// Rows from `row` on stand at their first pose [1, count, dof], in zero states.
+  /// Sets `count` rows from `row` to their first pose [1, count, dof] and zero LSTM states.
   void begin(const Tensor& pose, std::size_t row, std::size_t count) {
     const auto clear = [&](const Tensor& t, std::size_t first, std::size_t run) {
       context_.launch("elementwise", "fill", LaunchGrid::items(detail::vectors(context_, count * run)),
@@ -169,7 +171,7 @@ class RnnStream {
     detail::copy_runs(pose, 0, dof_, rows_, half_ * slab() + row * width(), width(), count, dof_);
   }
 
-  /// Rows from `row` on stand one frame after `given` [n, count, dof]; z [n + 1, count, k].
+  /// Sets `count` rows from `row` to the frame after `given` [n, count, dof]; z is [n + 1, count, k].
   void continue_from(const Tensor& given, const Var& h_txt, const Var& z, std::size_t row) {
     const std::size_t n = given.dim(0), count = given.dim(1);
     const Var plots = generator_.plot_gates(folded_, h_txt, slice(z, 0, 1, n));
@@ -190,7 +192,7 @@ class RnnStream {
   }
 
   Tensor encode(const std::vector<std::vector<int>>& sentences) const {
-    // A sentence that several motions have is encoded once.
+    // A sentence shared by several motions is encoded once.
     std::vector<std::vector<int>> distinct;
     std::vector<cl_int> which;
     for (const auto& sentence : sentences) {
@@ -203,7 +205,7 @@ class RnnStream {
     return gather_rows(each, Indices(context_, which)).value();
   }
 
-  /// Buffers for at least `count` motions; what is in them is kept.
+  /// Grows the buffers to at least `count` motions and keeps their contents.
   void reserve(std::size_t count) {
     if (count <= capacity_) return;
     const std::size_t larger = std::max(count, capacity_ + capacity_ / 2);
@@ -216,7 +218,8 @@ class RnnStream {
     grow(rows_, 2, width());
     for (Tensor* t : {&c0_, &c1_, &h_txt_}) grow(*t, 1, k_);
     capacity_ = larger;
-    // Plots are made for some frames ahead: a product of a few rows takes hardly longer than one of one row.
+    // Plots are computed several frames ahead: a product of a few rows takes hardly longer than one of one
+    // row.
     ahead_ = std::clamp<std::size_t>(1024 / capacity_, 1, 16);
     z_ = Tensor(context_, {ahead_, capacity_, k_});
     hidden_ = Tensor(context_, {ahead_, capacity_, k_});
@@ -226,7 +229,7 @@ class RnnStream {
     prepare();
   }
 
-  /// The products of a step, all but for places that change from step to step.
+  /// Sets up the matrix products of a step, except for the offsets that change from step to step.
   void prepare() {
     const RolloutWeights& w = folded_.rollout;
     const auto product = [](const Tensor& a, std::size_t a_ld, const Tensor& b, std::size_t n, std::size_t k,
@@ -249,7 +252,7 @@ class RnnStream {
     }
   }
 
-  /// After motions came or went.
+  /// Uploads the noise keys after motions were added or removed.
   void changed() {
     keys_.resize(4 * capacity_);
     device_keys_.write(keys_);
@@ -257,7 +260,7 @@ class RnnStream {
     ready_ = 0;
   }
 
-  /// The plots' share of the first layer's gates, for the next frames of all motions.
+  /// The plots' contribution to the first layer's gates, for the next `ahead_` frames of all motions.
   void make_plots() {
     const std::size_t batch = size(), rows = ahead_ * batch;
     context_.launch("random", "random_normal_each", LaunchGrid::items(rows * ((k_ + 63) / 64)), z_, ahead_, batch,
@@ -271,11 +274,11 @@ class RnnStream {
     ready_ = ahead_;
   }
 
-  /// One frame on. The states of this step and the next stand in the two halves of rows_ in turn.
+  /// Advances by one frame. The two halves of rows_ hold the states of this step and the next, in turn.
   void advance() {
     if (ready_ == 0) make_plots();
     const std::size_t batch = size(), now = half_ * slab(), next = (1 - half_) * slab();
-    const detail::At next_h1{rows_, now + dof_ + k_};  // stands with the state of the step after
+    const detail::At next_h1{rows_, now + dof_ + k_};  // stored with the state of the following step
     layers_.first.step({.batch = batch,
                         .rows = {rows_, now},
                         .width = width(),
@@ -311,17 +314,17 @@ class RnnStream {
   RnnGenerator::Folded folded_;
   detail::RolloutLayers layers_;
   std::size_t k_ = 0, dof_ = 0, capacity_ = 0, ahead_ = 1, ready_ = 0, half_ = 0;
-  std::uint64_t tick_ = 0;  // frames that the stream has made; a motion's own frame is tick + keys[3]
+  std::uint64_t tick_ = 0;  // frames made by the stream; a motion's own frame number is tick + keys[3]
   StreamId next_id_ = 0;
   std::vector<StreamId> ids_;  // by row
   std::map<StreamId, std::size_t> row_of_;
   std::vector<cl_int> keys_;  // [size, 4]
   Indices device_keys_;
-  Tensor rows_;             // two halves [capacity, dof + 2k], as a rollout's rows of two steps
+  Tensor rows_;             // two halves [capacity, dof + 2k], laid out like two steps of a rollout
   Tensor c0_, c1_, h_txt_;  // [capacity, k]
   Tensor z_, hidden_, plots_, gates_, made_;
   GemmCall noise_, plot_, move_;
-  std::array<Tensor, 3> panels_;  // their weights, packed
+  std::array<Tensor, 3> panels_;  // packed weights of the products above
   std::vector<float> host_;
   std::vector<double> host_double_;
 };

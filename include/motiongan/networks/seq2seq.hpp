@@ -1,5 +1,5 @@
 // Residual seq2seq (Martinez, Black & Romero, "On human motion prediction using recurrent neural networks",
-// 2017; SPEC 7.7): a baseline of motion completion.
+// 2017): a baseline for motion completion.
 #pragma once
 #include "motiongan/networks/attention_block.hpp"
 #include "motiongan/nn/gru.hpp"
@@ -8,15 +8,16 @@
 namespace motiongan {
 
 struct Seq2seqOptions {
-  std::size_t dof = 0;      ///< numbers of a pose
-  std::size_t classes = 0;  ///< Y, of the class beside every pose; 0: the class is not seen
+  std::size_t dof = 0;      ///< values per pose
+  std::size_t classes = 0;  ///< Y, for the class appended to every pose; 0: unconditional
   std::size_t hidden = 1024;
 };
 
-/// One GRU, the same weights as encoder and decoder, and a linear layer `out`: each pose is the one before
-/// plus what `out` makes of the state.
+/// One GRU, with the same weights in encoder and decoder, and a linear layer `out`: each pose is the previous
+/// one plus out(state).
 class Seq2seq {
  public:
+  /// Throws Error if dof or hidden is 0.
   Seq2seq(Initializer init, const Seq2seqOptions& options) : options_(options) {
     require(options.dof > 0 && options.hidden > 0, "Seq2seq: dof and hidden must be positive");
     gru_ = Gru(init, options.dof + options.classes, options.hidden);
@@ -25,18 +26,19 @@ class Seq2seq {
 
   const Seq2seqOptions& options() const { return options_; }
 
-  /// The `frames` poses [frames, B, dof] that follow the prefix [n, B, dof] of class [B, Y] (one-hot; empty
-  /// where the model sees none). The encoder reads the first n - 1 frames, the decoder begins with the last.
+  /// The `frames` poses [frames, B, dof] that follow the prefix [n, B, dof]. `classes` [B, Y] (one-hot) are
+  /// ignored by an unconditional model. The encoder reads the first n - 1 frames, the decoder starts from the
+  /// last one. Throws Error for any other shape or if frames is 0.
   Var operator()(const Var& prefix, const Var& classes, std::size_t frames) const {
-    require(prefix.value().rank() == 3 && prefix.dim(2) == options_.dof && frames > 0, "Seq2seq: a prefix ",
-            prefix.shape(), " and ", frames, " frames to make, expected [frames, batch, ", options_.dof,
+    require(prefix.value().rank() == 3 && prefix.dim(2) == options_.dof && frames > 0, "Seq2seq: prefix ",
+            prefix.shape(), " and frames ", frames, ", expected [frames, batch, ", options_.dof,
             "] and at least 1");
     require(options_.classes == 0 || (!classes.empty() && classes.dim(1) == options_.classes),
-            "Seq2seq: this model sees the class: it takes [batch, ", options_.classes, "] of them");
+            "Seq2seq: the model is class-conditional; expected classes [batch, ", options_.classes, "]");
     const std::size_t batch = prefix.dim(1), dof = options_.dof, k = options_.hidden;
     const bool sees_class = options_.classes > 0;
     const Var x = sees_class ? with_constant_channels(prefix, classes) : prefix;
-    const Var x_gates = linear(x, gru_.weight_ih, {.bias = gru_.bias_ih});  // of all frames in one product
+    const Var x_gates = linear(x, gru_.weight_ih, {.bias = gru_.bias_ih});  // all frames in one product
     Var each = broadcast_to(gru_.bias_ih, {batch, 3 * k}), by_pose = gru_.weight_ih;
     if (sees_class) {
       by_pose = slice(gru_.weight_ih, 1, 0, dof);

@@ -1,10 +1,10 @@
-// How DVGAN's critics judge features against a text (Lin & Amer, eq. 6 and 10; SPEC 3).
+// The validation module of DVGAN's critics: scores features against a text (Lin & Amer, eq. 6 and 10).
 #pragma once
 #include "motiongan/nn/linear.hpp"
 
 namespace motiongan {
 
-/// One score of a sequence of features: mean over frames of score(ReLU(motion(h) + text(h_txt))), size-1
+/// The score of a sequence of features: mean over frames of score(ReLU(motion(h) + text(h_txt))), with size-1
 /// convolutions.
 struct Validate {
   Conv1d motion, text, score;
@@ -12,13 +12,13 @@ struct Validate {
   Validate() = default;
   Validate(Initializer& init, std::size_t k) : motion(init, k, k), text(init, k, k), score(init, k, 1) {}
 
-  /// h [T, B, k], h_txt [1, B, k] -> [1, B, 1].
+  /// Features h [T, B, k] and text h_txt [1, B, k] -> scores [1, B, 1].
   Var operator()(const Var& h, const Var& h_txt) const {
     return (*this)(h, h_txt, motion.weight, motion.bias);
   }
 
   /// The same for features that are a linear function of h [T, B, c]: `weight` [1, k, c] and `bias` [k] are
-  /// those of motion() after it. The mean is taken before `score`, which is linear: less to multiply.
+  /// those of motion() composed with it. `score` is linear, so the mean is taken before it.
   Var operator()(const Var& h, const Var& h_txt, const Var& weight, const Var& bias) const {
     const Var moved = linear(h, weight, {.bias = bias});
     const Var hidden = mean(relu_of_sum(moved, text(h_txt)), 0);

@@ -1,4 +1,4 @@
-// PyTorch's GRU of one layer.
+// The parameters of a one-layer GRU, as in PyTorch.
 #pragma once
 #include <cmath>
 
@@ -6,8 +6,9 @@
 
 namespace motiongan {
 
-/// Gates r, z, n: r, z = sigmoid(W_i x + b_i + W_h h + b_h), n = tanh(W_i x + b_i + r (W_h h + b_h)),
-/// h' = (1 - z) n + z h. Every weight U(+-1/sqrt(k)).
+/// r, z = sigmoid(W_i x + b_i + W_h h + b_h), n = tanh(W_i x + b_i + r (W_h h + b_h)), h' = (1 - z) n + z h,
+/// with the gates stacked in the order r, z, n. Every parameter is initialised with U(+-1/sqrt(k)).
+/// gru_rollout runs it.
 struct Gru {
   Var weight_ih, weight_hh, bias_ih, bias_hh;  // [3k, in], [3k, k], [3k], [3k]
 

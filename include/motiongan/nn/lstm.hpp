@@ -1,11 +1,11 @@
-// PyTorch's LSTM of several layers, and its Embedding.
+// Multi-layer LSTM and embedding, as in PyTorch.
 #pragma once
 #include "motiongan/nn/linear.hpp"
 #include "motiongan/ops/lstm.hpp"
 
 namespace motiongan {
 
-/// A table of rows, N(0, 1) at first: words [n] -> [n, channels].
+/// A lookup table [rows, channels], initialised with N(0, 1): word ids [n] -> [n, channels].
 struct Embedding {
   Var weight;
 
@@ -16,12 +16,12 @@ struct Embedding {
   void list_parameters(ParameterList& list) { list.add("weight", weight); }
 };
 
-/// h and c of every layer after a run, [B, k] each.
+/// Hidden state h and cell state c of every layer, [B, k] each; empty means zeros.
 struct LstmState {
   std::vector<Var> h, c;
 };
 
-/// Layers of LSTM, gate order i, f, g, o; every weight U(+-1/sqrt(k)).
+/// Stacked LSTM layers with gate order i, f, g, o. Every parameter is initialised with U(+-1/sqrt(k)).
 struct Lstm {
   struct Layer {
     Var weight_ih, weight_hh, bias_ih, bias_hh;  // [4k, in], [4k, k], [4k], [4k]
@@ -40,8 +40,8 @@ struct Lstm {
 
   std::size_t hidden() const { return layers.at(0).weight_hh.dim(1); }
 
-  /// All states of every layer, each [2, T, B, k] (h, then c). x is [T, B, in]; layers go on from `state`
-  /// (empty: from zeros), lengths as lstm_layer.
+  /// All states of every layer, each [2, T, B, k] (h, then c). x is [T, B, in]; `state` is the initial state
+  /// (empty: zeros); for `lengths` see lstm_layer.
   std::vector<Var> operator()(const Var& x, const Indices& lengths = {}, const LstmState& state = {}) const {
     std::vector<Var> states;
     Var input = x;
@@ -56,8 +56,8 @@ struct Lstm {
     return states;
   }
 
-  /// h of the last layer, [T, B, k], of layers that go on from `state` (empty: from zeros), which becomes the
-  /// state after the last frame.
+  /// Continues from `state` (empty: zeros) over x [T, B, in] and updates it to the state after the last
+  /// frame. Returns h of the last layer, [T, B, k].
   Var advance(const Var& x, LstmState& state) const {
     const std::vector<Var> states = (*this)(x, {}, state);
     state = {};

@@ -1,4 +1,4 @@
-// Modules own named parameters. Names are PyTorch's state_dict keys, joined by dots.
+// Modules own named parameters; the names are the keys of a PyTorch state_dict.
 #pragma once
 #include <memory>
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace motiongan {
 
-/// How a parameter is kept on the device and how it is written to files.
+/// A parameter's layout on the device and in files.
 enum class ParameterLayout {
-  plain,       ///< as PyTorch has it
-  convolution  ///< [taps, out, in] on the device (each tap is one matrix), [out, in, taps] in files
+  plain,       ///< as in PyTorch, on the device and in files
+  convolution  ///< [taps, out, in] on the device (one matrix per tap), [out, in, taps] in files
 };
 
 struct NamedParameter {
@@ -21,8 +21,8 @@ struct NamedParameter {
   ParameterLayout layout = ParameterLayout::plain;
 };
 
-/// Makes parameters with random first values. They are numbered in the order in which they are made, and the
-/// number is part of their randomness' key: equal seeds and options give equal weights.
+/// Creates parameters with random initial values. The random key of each contains its number in order of
+/// creation: equal seeds and options give equal weights.
 class Initializer {
  public:
   Initializer(const Context& context, std::uint64_t seed) : context_(context), seed_(seed) {}
@@ -39,7 +39,7 @@ class Initializer {
     return Var::leaf(Tensor::from(context_, std::move(shape), values));
   }
 
-  /// N(0, 1).
+  /// Standard normal.
   Var normal(std::size_t rows, std::size_t columns) {
     return Var::leaf(random_normal(context_, {.seed = seed_, .stream = RandomStream::weights, .step = ++count_}, 1,
                                    rows, columns)
@@ -54,7 +54,7 @@ class Initializer {
   std::uint32_t count_ = 0;
 };
 
-/// A list of parameters under construction; modules add theirs under a prefix.
+/// Collects parameters; the names of a submodule's get its prefix and a dot.
 class ParameterList {
  public:
   void add(const std::string& name, Var& value, ParameterLayout layout = ParameterLayout::plain) {
@@ -74,7 +74,7 @@ class ParameterList {
   std::vector<NamedParameter> items_;
 };
 
-/// The named parameters of a module (anything with list_parameters(ParameterList&)).
+/// The named parameters of a module, any type with a member list_parameters(ParameterList&).
 template <class Module>
 std::vector<NamedParameter> named_parameters(Module& module) {
   ParameterList list;
@@ -88,13 +88,13 @@ inline std::vector<Var> values_of(const std::vector<NamedParameter>& parameters)
   return values;
 }
 
-/// While one lives, the parameters are constants: nothing computed from them leads a gradient to them, and
-/// grad() refuses to be asked for one. For networks that another one is trained through.
+/// While an object of this class exists, the parameters are constants: no gradient flows to them, and grad()
+/// with respect to one throws. For a network through which another one is trained.
 class Frozen {
  public:
   explicit Frozen(const std::vector<NamedParameter>& parameters) {
     for (const NamedParameter& p : parameters) {
-      if (!p.value->requires_grad()) continue;  // frozen already
+      if (!p.value->requires_grad()) continue;  // already frozen
       nodes_.push_back(p.value->node());
       nodes_.back()->requires_grad = false;
     }
@@ -109,6 +109,7 @@ class Frozen {
   std::vector<std::shared_ptr<Node>> nodes_;
 };
 
+/// Total number of elements of all parameters.
 inline std::size_t parameter_count(const std::vector<NamedParameter>& parameters) {
   std::size_t n = 0;
   for (const NamedParameter& p : parameters) n += p.value->size();

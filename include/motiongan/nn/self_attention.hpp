@@ -1,13 +1,13 @@
-// Self-attention over the frames of a motion (Malek-Podjaski & Deligianni, eq. 1-3; SPEC 5).
+// Self-attention over the frames of a motion (Malek-Podjaski & Deligianni, eq. 1-3).
 #pragma once
 #include "motiongan/nn/linear.hpp"
 #include "motiongan/ops/attention.hpp"
 
 namespace motiongan {
 
-/// out = gamma * W_out(o) + x with o_j = sum over i of beta_ji value(x_i), beta_ji = softmax over i of
-/// query(x_i) . key(x_j). Query, key and value have C / 8 channels (rounded down), at least 1. gamma starts
-/// at 0: the layer is the identity until training opens it.
+/// y = gamma * out(o) + x, with o_j = sum over i of beta_ji value(x_i) and beta_ji = softmax over i of
+/// query(x_i) . key(x_j). Query, key and value have C / 8 channels (rounded down, at least 1). gamma starts
+/// at 0, so the layer is initially the identity.
 struct SelfAttention {
   static constexpr std::size_t reduction = 8;
   Conv1d query, key, value, out;
@@ -23,13 +23,14 @@ struct SelfAttention {
     gamma = init.constant({1}, 0);
   }
 
-  /// How much each frame takes from each, [B, T, T]: row j, column i (see attention_map).
+  /// Attention weights [B, T, T]: row j holds the weights of frame j over all frames i (see attention_map).
   Var map(const Var& x) const { return attention_map(query(x), key(x)); }
 
   /// [T, B, C] -> [T, B, C].
   Var operator()(const Var& x) const {
     const std::size_t inner = query.out_channels(), channels = x.dim(2);
-    // One product for all three; gamma goes into the weights of the last, which are fewer than activations.
+    // One product for query, key and value; gamma scales the output weights, which are fewer than the
+    // activations.
     const Var all = linear(x, concatenate({query.weight, key.weight, value.weight}, 1),
                            {.bias = concatenate({query.bias, key.bias, value.bias}, 0)});
     const auto part = [&](std::size_t i) { return slice(all, 2, i * inner, inner); };

@@ -1,4 +1,4 @@
-// Parameters to and from safetensors, named and shaped as PyTorch's state_dict() has them (SPEC 0).
+// Saves and loads parameters as safetensors, with the names and shapes of a PyTorch state_dict().
 #pragma once
 #include "motiongan/io/safetensors.hpp"
 #include "motiongan/nn/module.hpp"
@@ -7,8 +7,7 @@ namespace motiongan::io {
 
 namespace detail {
 
-/// [taps, out, in] <-> [out, in, taps]: moves the axis of size `taps` from the front to the back, or back
-/// again.
+/// [taps, out, in] <-> [out, in, taps]: moves the axis of size `taps` from front to back, or the reverse.
 template <class T>
 std::vector<T> move_taps(const std::vector<T>& values, std::size_t taps, bool to_back) {
   const std::size_t rest = values.size() / taps;
@@ -25,21 +24,20 @@ std::vector<T> move_taps(const std::vector<T>& values, std::size_t taps, bool to
 
 }  // namespace detail
 
-/// The shape that a parameter has in a file.
+/// A parameter's shape in files.
 inline Shape file_shape(const NamedParameter& parameter) {
   const Shape& s = parameter.value->shape();
   return parameter.layout == ParameterLayout::convolution ? Shape{s[1], s[2], s[0]} : s;
 }
 
-/// A tensor on the device that has this parameter's layout (the parameter itself, or its gradient), in the
-/// order of files.
+/// The values of a device tensor with this parameter's layout (the parameter or its gradient), in file order.
 inline std::vector<double> to_file_order(const NamedParameter& parameter, const Tensor& tensor) {
   std::vector<double> values = tensor.to_host<double>();
   return parameter.layout == ParameterLayout::convolution ? detail::move_taps(values, tensor.dim(0), true) : values;
 }
 
-/// Adds every parameter to `file` under `prefix` + its name, in the context's precision. Throws, naming the
-/// tensor, when one holds a number that is not finite: load_parameters() would refuse it.
+/// Adds every parameter to `file` as `prefix` + its name, in the context's precision. Throws Error, naming
+/// the parameter, if one holds a value that is not finite.
 inline void save_parameters(const std::vector<NamedParameter>& parameters, SafeTensors& file,
                             const std::string& prefix = "") {
   for (const NamedParameter& p : parameters) {
@@ -47,7 +45,7 @@ inline void save_parameters(const std::vector<NamedParameter>& parameters, SafeT
     for (double v : values)
       require(
           std::isfinite(v), "the parameter \"", prefix + p.name, "\" holds ", v,
-          ": training diverged; nothing is saved, go back to the last file and try a lower learning rate");
+          ": training diverged; nothing is saved, resume from the last file with a lower learning rate");
     file.tensors[prefix + p.name] =
         p.value->context().precision() == Precision::f64
             ? SafeTensor::of(file_shape(p), values)
@@ -55,23 +53,23 @@ inline void save_parameters(const std::vector<NamedParameter>& parameters, SafeT
   }
 }
 
-/// Sets every parameter from `file`. Throws, naming the tensor, when one is missing, has another shape, is
-/// not made of floating-point numbers or holds one that is not finite; then no parameter has changed. `where`
-/// names the file.
+/// Sets every parameter from `file`. Throws Error, starting with `where` and naming the tensor, if one is
+/// missing, has another shape, is not of a floating-point type or holds a value that is not finite; then no
+/// parameter has changed.
 inline void load_parameters(const std::vector<NamedParameter>& parameters, const SafeTensors& file,
                             const std::string& where, const std::string& prefix = "") {
   std::vector<std::vector<double>> all;
   for (const NamedParameter& p : parameters) {
     const auto found = file.tensors.find(prefix + p.name);
     require(found != file.tensors.end(), where, ": the tensor \"", prefix + p.name, "\" of shape ",
-            file_shape(p), " is missing; the file belongs to another model or to other options");
+            file_shape(p), " is missing; the file was saved from another model or with other options");
     require(found->second.shape == file_shape(p), where, ": the tensor \"", prefix + p.name, "\" has shape ",
             found->second.shape, ", expected ", file_shape(p),
-            "; the file belongs to a model of other sizes");
+            "; the file was saved from a model of another size");
     all.push_back(found->second.as<double>());
     for (double v : all.back())
       require(std::isfinite(v), where, ": the tensor \"", prefix + p.name, "\" holds ", v,
-              "; the file is damaged or its training diverged");
+              "; the file is damaged or training diverged");
     if (p.layout == ParameterLayout::convolution) all.back() = detail::move_taps(all.back(), p.value->dim(0), false);
   }
   for (std::size_t i = 0; i < parameters.size(); ++i) {

@@ -1,22 +1,22 @@
-// The language model of both generator and critic (SPEC 1).
+// The text encoder (LanguageModel) of DVGAN's generators, critics and rankers (Lin & Amer, eq. 4-10).
 #pragma once
 #include "motiongan/nn/lstm.hpp"
 
 namespace motiongan {
 
-/// A batch of sentences on the device, one column a sample.
+/// A batch of sentences on the device, one column per sample.
 struct Sentences {
-  Indices words;    ///< [longest, batch], word numbers; anything behind a sentence's end
-  Indices lengths;  ///< [batch]
+  Indices words;    ///< word ids [longest, batch]; padding past a sentence's end is never used
+  Indices lengths;  ///< in words, [batch]
   std::size_t longest = 0, batch = 0;
 
   Sentences() = default;
 
-  /// Throws when a sentence is empty or a word is not in a vocabulary of `vocabulary` words.
+  /// Throws Error if a sentence is empty or a word id is not in 0 .. vocabulary - 1.
   Sentences(const Context& context, const std::vector<std::vector<int>>& sentences, std::size_t vocabulary)
       : batch(sentences.size()) {
     for (const auto& sentence : sentences) {
-      require(!sentence.empty(), "a sentence without a word: every sample needs a description");
+      require(!sentence.empty(), "a sentence is empty: every sample needs a description");
       longest = std::max(longest, sentence.size());
     }
     std::vector<cl_int> grid(longest * batch, 0), length;
@@ -24,7 +24,7 @@ struct Sentences {
       length.push_back(static_cast<cl_int>(sentences[b].size()));
       for (std::size_t t = 0; t < sentences[b].size(); ++t) {
         require(sentences[b][t] >= 0 && static_cast<std::size_t>(sentences[b][t]) < vocabulary,
-                "word number ", sentences[b][t], " is outside the vocabulary of ", vocabulary, " words");
+                "word id ", sentences[b][t], " is outside the vocabulary of ", vocabulary, " words");
         grid[t * batch + b] = sentences[b][t];
       }
     }
@@ -33,8 +33,8 @@ struct Sentences {
   }
 };
 
-/// Embedding, two-layer LSTM, then both layers' h and c after the last real word through a linear layer: [B,
-/// k].
+/// Word embedding, two LSTM layers of k, then a linear layer on the concatenated h and c of both layers after
+/// each sentence's last word. Returns h_txt, [B, k].
 struct TextEncoder {
   Embedding embedding;
   Lstm lstm;

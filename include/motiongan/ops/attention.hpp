@@ -1,9 +1,8 @@
-// Attention along time (Malek-Podjaski & Deligianni, eq. 1, 2): products of frames with frames, sample by
-// sample.
+// Attention over frames, per sample (Malek-Podjaski & Deligianni, eq. 1, 2).
 //
-// Motion is [frames, batch, channels], so one sample's frames lie batch * channels numbers apart: the
-// products read them in place. A map of weights is [batch, rows, columns], one matrix for each sample. The
-// two products below are closed under differentiation: the derivative of either is made of both.
+// Motion is [frames, batch, channels], so the frames of a sample are batch * channels elements apart and the
+// products read them in place. An attention map is [batch, rows, columns], one matrix per sample. The two
+// products are closed under differentiation: the gradients of each are the same two products.
 #pragma once
 #include "motiongan/core/gemm.hpp"
 #include "motiongan/ops/reduce.hpp"
@@ -12,7 +11,8 @@ namespace motiongan {
 
 inline Var attention_apply(const Var& map, const Var& x, bool transposed = false);
 
-/// map[b, j, i] = a_j . c_i of sample b: [J, B, C], [I, B, C] -> [B, J, I].
+/// Attention scores: map[b, j, i] = a_j . c_i for every sample b: [J, B, C], [I, B, C] -> [B, J, I]. Throws
+/// Error if B or C differ.
 inline Var attention_scores(const Var& a, const Var& c) {
   require(a.value().rank() == 3 && c.value().rank() == 3 && a.dim(1) == c.dim(1) && a.dim(2) == c.dim(2),
           "attention_scores: shapes ", a.shape(), " and ", c.shape());
@@ -31,8 +31,8 @@ inline Var attention_scores(const Var& a, const Var& c) {
                 });
 }
 
-/// out_j = sum over i of map[b, j, i] x_i for every sample b: [B, J, I], [I, B, C] -> [J, B, C]. `transposed`
-/// takes map[b, i, j], of shape [B, I, J], instead.
+/// out_j = sum over i of map[b, j, i] x_i for every sample b: [B, J, I], [I, B, C] -> [J, B, C]. With
+/// `transposed`, the map is [B, I, J]. Throws Error if the shapes do not fit.
 inline Var attention_apply(const Var& map, const Var& x, bool transposed) {
   require(map.value().rank() == 3 && x.value().rank() == 3 && map.dim(0) == x.dim(1) &&
               map.dim(transposed ? 1 : 2) == x.dim(0),
@@ -55,8 +55,9 @@ inline Var attention_apply(const Var& map, const Var& x, bool transposed) {
                 });
 }
 
-/// The attention map beta (eq. 1, 2): map[b, j, i] = softmax over i of query_i . key_j, how much frame j
-/// takes from frame i; every row sums to 1. [I, B, R], [J, B, R] -> [B, J, I].
+/// Attention weights beta (Malek-Podjaski & Deligianni, eq. 1): map[b, j, i] = softmax over i of query_i .
+/// key_j, the weight of frame i in the output of frame j; every row sums to 1. [I, B, R], [J, B, R] ->
+/// [B, J, I].
 inline Var attention_map(const Var& query, const Var& key) { return softmax(attention_scores(key, query)); }
 
 }  // namespace motiongan

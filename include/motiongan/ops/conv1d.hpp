@@ -1,18 +1,19 @@
-// Convolution along time as a sum of matrix products with shifted rows, and linear layers as its case of one
+// Convolution along time as a sum of matrix products with shifted frames; a linear layer is the case of one
 // tap.
 //
-//   y[t] = sum_s x[t + offset_s] * op(W_s),   frames outside x count as zero
+//   y[t] = sum_s x[t + offset_s] * op(W_s),   frames outside x are zero
 //
-// In a time-major tensor [T, B, C] frame t is a block of B rows, so each term is one product over whole
-// frames and no patch is ever copied. The family is closed under differentiation: the gradient by x is the
-// same sum with opposite offsets and the other op, the gradient by W is `conv1d_weight`, whose own gradients
-// are sums of convolutions again.
+// In a time-major tensor [T, B, C], frame t is a block of B rows, so each term is one product over whole
+// frames and no patches are copied (no im2col). The operations are closed under differentiation: the gradient
+// with respect to x is the same sum with negated offsets and the other op; that with respect to W is
+// conv1d_weight, whose own gradients are convolutions again.
 #pragma once
 #include "motiongan/core/gemm.hpp"
 #include "motiongan/ops/layout.hpp"
 
 namespace motiongan {
 
+/// Frame offset of every tap.
 using Offsets = std::vector<int>;
 
 inline Offsets operator-(Offsets offsets) {
@@ -22,13 +23,13 @@ inline Offsets operator-(Offsets offsets) {
 
 namespace detail {
 
-/// A run of output frames [first, last) that the same taps reach.
+/// A range of output frames [first, last) for which the same taps lie inside x.
 struct TapRange {
   std::size_t first, last;
   std::vector<std::size_t> taps;
 };
 
-/// Splits the output frames 0..frames_out at the frames where a tap enters or leaves x.
+/// Splits the output frames 0 .. frames_out - 1 wherever a tap enters or leaves x.
 inline std::vector<TapRange> tap_ranges(const Offsets& offsets, std::size_t frames_in,
                                         std::size_t frames_out) {
   const auto in = static_cast<long>(frames_in), out = static_cast<long>(frames_out);
@@ -49,21 +50,21 @@ inline std::vector<TapRange> tap_ranges(const Offsets& offsets, std::size_t fram
   return ranges;
 }
 
-/// What follows the sum: + bias + residual, then ReLU.
+/// + bias + residual, then ReLU.
 struct Epilogue {
   Tensor bias, residual;
   bool relu = false;
 };
 
-/// The taps' weights in the order in which the native engine reads them, [taps * panels, in, columns]; empty
-/// where bringing them there costs more than it saves. `call` has what does not change from range to range.
+/// The weights of all taps packed by pack_b(), [taps * panels, in, columns]; empty if packing costs more than
+/// it saves. `call` holds what is the same for all ranges.
 inline Tensor pack_taps(const Context& context, GemmCall call, std::size_t taps_count, std::size_t tap_size,
                         std::size_t rows) {
   const std::size_t columns = 2 * context.vector_width(), last = call.n % columns;
-  // A packed panel is multiplied at full width.
+  // A packed panel is always multiplied at full width.
   const bool narrow = last > 0 && last <= columns / 2 && call.n < 4 * columns;
   if (rows < 256 || taps_count > 4 || call.k < 16 || narrow) return {};
-  if (call.b_transposed && last == 0) {  // the taps' panels follow one another
+  if (call.b_transposed && last == 0) {  // the panels of the taps are consecutive
     call.n *= taps_count;
     return pack_b(context, call);
   }
@@ -80,7 +81,7 @@ inline Tensor conv1d_value(const Tensor& x, const Tensor& w, const Offsets& offs
   shape.front() = frames_out;
   shape.back() = out;
   Tensor y(x.context(), shape);
-  constexpr std::size_t most = 4;  // segments of one gemm() call
+  constexpr std::size_t most = 4;  // segments per gemm() call
   GemmCall weights{.n = out, .k = in, .b = w};
   weights.b_ld = w.dim(2), weights.b_transposed = !transposed;
   const Tensor packed = pack_taps(x.context(), weights, offsets.size(), tap_size, frames_out * rows);
@@ -127,7 +128,7 @@ inline Tensor conv1d_value(const Tensor& x, const Tensor& w, const Offsets& offs
   return y;
 }
 
-/// W_s[i, j] = sum over frames t and rows of p[t, i] * q[t + offset_s, j].
+/// W_s[i, j] = sum over frames t and rows of p[t, i] * q[t + offset_s, j]: [taps, P, Q].
 inline Tensor conv1d_weight_value(const Tensor& p, const Tensor& q, const Offsets& offsets) {
   const std::size_t p_frames = p.dim(0), q_frames = q.dim(0), m = p.shape().back(), n = q.shape().back(),
                     rows = p.size() / p_frames / m;
@@ -160,15 +161,16 @@ inline Tensor conv1d_weight_value(const Tensor& p, const Tensor& q, const Offset
 
 inline Var conv1d_weight(const Var& p, const Var& q, const Offsets& offsets);
 
-/// What follows the sum of a convolution or a linear layer; all optional.
+/// Optional bias, residual and ReLU after a convolution or a linear layer.
 struct Conv1dEpilogue {
   Var bias = {};      ///< [out]
-  Var residual = {};  ///< like the result
+  Var residual = {};  ///< of the result's shape
   bool relu = false;
 };
 
-/// y[t] = sum_s x[t + offset_s] * op(W_s) + bias + residual, then ReLU if asked. x is [T, ..., in], W [taps,
-/// out, in] (op transposes) or, `transposed`, [taps, in, out]; y is [frames_out, ..., out].
+/// y[t] = sum_s x[t + offset_s] * op(W_s) + bias + residual, then ReLU if extras.relu. x is [T, ..., in]; W
+/// is [taps, out, in] (op transposes) or, with `transposed`, [taps, in, out]; y is [frames_out, ..., out].
+/// Throws Error if the weights do not fit the taps or the input.
 inline Var conv1d(const Var& x, const Var& w, const Offsets& offsets, std::size_t frames_out,
                 bool transposed = false, const Conv1dEpilogue& extras = {}) {
   require(w.value().rank() == 3 && w.dim(0) == offsets.size(), "conv1d: weights ", w.shape(), " for ",
@@ -196,15 +198,15 @@ inline Var conv1d(const Var& x, const Var& w, const Offsets& offsets, std::size_
                 });
 }
 
-/// x W^T + bias + residual on the last axis, then ReLU if asked: [..., in] -> [..., out]. `w` is [out, in], or
-/// [1, out, in] as a convolution of one tap keeps it.
+/// x W^T + bias + residual on the last axis, then ReLU if epilogue.relu: [..., in] -> [..., out]. `w` is
+/// [out, in] or, from a convolution with one tap, [1, out, in].
 inline Var linear(const Var& x, const Var& w, const Conv1dEpilogue& epilogue = {}) {
   const Var one_tap = w.value().rank() == 2 ? reshape(w, {1, w.dim(0), w.dim(1)}) : w;
   return conv1d(x, one_tap, {0}, x.dim(0), false, epilogue);
 }
 
-/// W_s[i, j] = sum over t of p[t, i] * q[t + offset_s, j]: the gradient of `conv1d` by its weights. [taps, P,
-/// Q]
+/// W_s[i, j] = sum over frames t and rows of p[t, i] * q[t + offset_s, j], the gradient of conv1d with
+/// respect to its weights: [T, ..., P], [T', ..., Q] -> [taps, P, Q].
 inline Var conv1d_weight(const Var& p, const Var& q, const Offsets& offsets) {
   return record("conv1d_weight", {p, q}, detail::conv1d_weight_value(p.value(), q.value(), offsets),
                 [offsets](const Node& self, const Var& u, const Needs& needs) -> std::vector<Var> {

@@ -1,4 +1,4 @@
-// Classes as vectors, and what a wrong guess costs.
+// One-hot encoding and cross-entropy.
 #pragma once
 #include <span>
 
@@ -6,7 +6,7 @@
 
 namespace motiongan {
 
-/// Rows of zeros with a one at each label: [B, classes].
+/// One-hot encoding of class labels: [B, classes]. Throws Error if a label is not less than `classes`.
 inline Tensor one_hot(const Context& context, std::span<const std::size_t> labels, std::size_t classes) {
   std::vector<float> values(labels.size() * classes);
   for (std::size_t b = 0; b < labels.size(); ++b) {
@@ -16,7 +16,8 @@ inline Tensor one_hot(const Context& context, std::span<const std::size_t> label
   return Tensor::from(context, {labels.size(), classes}, values);
 }
 
-/// Mean over samples of -log softmax(logits)[label], [1]; logits [B, Y], `targets` [B, Y] one-hot.
+/// Mean cross-entropy over samples, -log softmax(logits)[label]: logits [B, Y], one-hot targets [B, Y] ->
+/// [1]. Throws Error if the shapes differ.
 inline Var cross_entropy(const Var& logits, const Var& targets) {
   require(logits.shape() == targets.shape(), "cross_entropy: logits ", logits.shape(), " and targets ",
           targets.shape());

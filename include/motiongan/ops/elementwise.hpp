@@ -1,4 +1,4 @@
-// Elementwise operations, with their derivatives.
+// Differentiable elementwise operations; binary ones throw Error if the shapes differ.
 #pragma once
 #include "motiongan/autograd/arithmetic.hpp"
 
@@ -22,7 +22,7 @@ inline Var operator/(const Var& x, const Var& y) {
 inline Var square(const Var& x) { return x * x; }
 
 namespace detail {
-/// g where y > 0, slope*g elsewhere: linear in g; y only chooses, its derivative is zero.
+/// g where y > 0, slope*g elsewhere. Linear in g; the derivative with respect to y is zero.
 inline Var leaky_relu_grad(const Var& g, const Tensor& y, double slope) {
   return record("leaky_relu_grad", {g}, binary("leaky_relu_grad", g.value(), y, slope),
                 [y, slope](const Node&, const Var& u, const Needs&) -> std::vector<Var> {
@@ -41,7 +41,7 @@ inline Var leaky_relu(const Var& x, double slope) {
 inline Var relu(const Var& x) { return leaky_relu(x, 0); }
 
 namespace detail {
-/// g * (1 - y^2), the derivative of tanh by its value y, itself differentiable by both.
+/// g * (1 - y^2), the gradient of tanh in terms of its value y; differentiable in g and y.
 inline Var tanh_grad(const Var& g, const Var& y) {
   return record("tanh_grad", {g, y}, binary("tanh_grad", g.value(), y.value()),
                 [](const Node& self, const Var& u, const Needs& needs) -> std::vector<Var> {
@@ -49,7 +49,7 @@ inline Var tanh_grad(const Var& g, const Var& y) {
                   return {needs[0] ? tanh_grad(u, yi) : Var(), needs[1] ? -2 * (u * gi * yi) : Var()};
                 });
 }
-/// g * y * (1 - y), likewise for the sigmoid.
+/// g * y * (1 - y), the same for the sigmoid.
 inline Var sigmoid_grad(const Var& g, const Var& y) {
   return record(
       "sigmoid_grad", {g, y}, binary("sigmoid_grad", g.value(), y.value()),
@@ -58,7 +58,7 @@ inline Var sigmoid_grad(const Var& g, const Var& y) {
         return {needs[0] ? sigmoid_grad(u, yi) : Var(), needs[1] ? u * gi * affine(yi, -2, 1) : Var()};
       });
 }
-/// This node as a Var, for derivatives that are functions of the value itself.
+/// This node as a Var, for derivatives that are functions of its value.
 inline Var itself(const Node& node) { return Var(std::const_pointer_cast<Node>(node.shared_from_this())); }
 }  // namespace detail
 

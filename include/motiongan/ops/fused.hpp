@@ -1,13 +1,13 @@
-// fused(): an operation with fast kernels for its value and first derivative, and the same function written in
-// elementary operations for higher ones. (The pattern of MLX's primitives with a fallback.)
+// fused(): an operation with fast kernels for its value and first derivative, and a composition of elementary
+// operations for higher derivatives (like MLX's primitives with a fallback).
 #pragma once
 #include "motiongan/autograd/grad.hpp"
 #include "motiongan/ops/layout.hpp"
 
 namespace motiongan::detail {
 
-/// Partial derivatives of `f` by those inputs that are needed, themselves differentiable. Copies of the
-/// inputs are younger than what they copy, so the sweep stops at them.
+/// Vector-Jacobian product of `f` with respect to the needed inputs, itself differentiable. The inputs are
+/// copied because grad() stops at nodes older than its inputs.
 template <class F>
 std::vector<Var> partial_derivatives(const std::vector<Var>& inputs, const Var& g, const Needs& needs,
                                      const F& f) {
@@ -22,13 +22,13 @@ std::vector<Var> partial_derivatives(const std::vector<Var>& inputs, const Var& 
   return result;
 }
 
-/// Records an operation whose `value` has been computed by kernels of its own.
+/// Records an operation whose `value` was computed by fused kernels.
 ///
-/// `backward(self, g, needs)` gives the gradients of the inputs as tensors, by kernels too; an empty tensor
-/// means zero. It serves when nothing is recorded, that is for a first derivative. When the derivative is to
-/// be differentiated again, `composed(inputs)` is differentiated in its place: the same function of the
-/// inputs, written in operations that have derivatives of every order. `double_backward(self, g, needs)` may
-/// give a faster answer for that case, or an empty list where it has none.
+/// `backward(self, g, needs)` returns the gradients of the inputs as tensors (empty means zero), also from
+/// fused kernels. It is used when the backward pass is not recorded, i.e. for first derivatives. To
+/// differentiate again, `composed(inputs)` is differentiated instead: the same function, composed of
+/// operations with derivatives of every order. `double_backward(self, g, needs)` can return differentiable
+/// gradients faster for that case, or an empty list if it cannot.
 template <class Backward, class Composed, class DoubleBackward>
 Var fused(const char* name, std::vector<Var> inputs, Tensor value, Backward backward, Composed composed,
           DoubleBackward double_backward) {

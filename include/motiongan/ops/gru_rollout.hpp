@@ -1,26 +1,25 @@
-// A GRU that reads a motion and goes on by itself (Martinez, Black & Romero 2017; SPEC 7.7).
+// Autoregressive rollout of a GRU with residual pose output (Martinez, Black & Romero 2017).
 //
-// In every step  r, z, n = x_t + [W_h h + b_h],  h' = (1 - z) n + z h  with PyTorch's gates. The first n
-// steps see what is given; the last of them and all after it make a pose, a = a_before + h' Wd^T + bd, which
-// the next step sees.
+// Every step is a GRU step in PyTorch's convention (see Gru). The first n steps read the given poses; the
+// last of them and all later ones predict a pose, a_t = a_{t-1} + h_t Wd^T + bd, which the next step reads.
 #pragma once
 #include "motiongan/ops/fused.hpp"
 #include "motiongan/ops/matmul.hpp"
 
 namespace motiongan {
 
-/// The weights of a rollout; M numbers a pose, k hidden ones.
+/// The weights of gru_rollout, for poses of M dimensions and hidden size k.
 struct GruRolloutWeights {
   Var recurrent;       ///< W_h [3k, k]
   Var recurrent_bias;  ///< b_h [3k]
-  Var pose;            ///< what a pose does to the gates, [3k, M]
+  Var pose;            ///< from a pose to the gates, [3k, M]
   Var diff;            ///< Wd [M, k]
   Var diff_bias;       ///< bd [M]
 };
 
 namespace detail {
 
-/// gru_rollout out of elementary operations; every derivative exists.
+/// gru_rollout composed of elementary operations, with derivatives of every order.
 inline Var gru_rollout_composed(const Var& x_gates, const Var& each, const Var& last,
                                 const GruRolloutWeights& w, std::size_t frames) {
   const std::size_t given = x_gates.dim(0), batch = x_gates.dim(1), k = w.recurrent.dim(1),
@@ -43,12 +42,12 @@ inline Var gru_rollout_composed(const Var& x_gates, const Var& each, const Var& 
   return concatenate(motion, 0);
 }
 
-/// What the forward pass leaves for the derivative. S = n - 1 + frames steps.
+/// What the forward pass keeps for the backward pass. S = n - 1 + frames steps.
 struct GruTrace {
   std::size_t given, frames, batch, dof, k;
-  Tensor states;  // h before each step and after the last, [S + 1, B, k]
-  Tensor kept;    // r, z, n and the state's part of n, [S, B, 4k]
-  Tensor poses;   // the last one given, then those made, [frames + 1, B, M]
+  Tensor states;  // initial h and h after every step, [S + 1, B, k]
+  Tensor kept;    // r, z, n and W_h h + b_h of gate n, [S, B, 4k]
+  Tensor poses;   // the last given pose, then the predicted ones, [frames + 1, B, M]
 
   std::size_t steps() const { return given - 1 + frames; }
   std::size_t state_at(std::size_t t) const { return t * batch * k; }
@@ -57,12 +56,12 @@ struct GruTrace {
   LaunchGrid cells() const { return LaunchGrid::items(batch * vectors(states.context(), k)); }
 };
 
-/// A product of rows with W^T, or with W, W [out, in]; places and what is added are yet to be named.
+/// rows * W^T if `transposed`, else rows * W, with W [out, in]; the caller sets the offsets and addends.
 inline GemmCall product_with(const Tensor& w, bool transposed, std::size_t rows) {
   GemmCall call{.m = rows, .n = w.dim(transposed ? 0 : 1), .k = w.dim(transposed ? 1 : 0), .b = w};
   call.a_ld = call.k, call.b_ld = w.dim(1), call.c_ld = call.residual_ld = call.n;
   call.b_transposed = transposed;
-  call.b_panels = pack_b(w.context(), call);  // the same in every step: packed once for all
+  call.b_panels = pack_b(w.context(), call);  // packed once for all steps
   return call;
 }
 
@@ -104,15 +103,15 @@ inline GruTrace gru_rollout_forward(const Tensor& x_gates, const Tensor& each, c
   return t;
 }
 
-/// Gradients by x_gates, each, last, W_h, b_h, the pose's weights, Wd and bd of a rollout whose motion has
-/// gradient g [frames, B, M].
+/// Gradients with respect to x_gates, each, last, W_h, b_h, w.pose, Wd and bd, given the gradient g
+/// [frames, B, M] of the predicted poses.
 inline std::vector<Tensor> gru_rollout_backward(const GruTrace& t, const Node& self, const Tensor& g,
                                              const Needs& needs) {
   const Context& context = g.context();
-  const std::size_t steps = t.steps(), own = t.frames - 1;  // steps that see a pose that was made
+  const std::size_t steps = t.steps(), own = t.frames - 1;  // steps that read a predicted pose
   const Tensor poses(context, g.shape()), dx(context, {steps, t.batch, 3 * t.k}), ds(context, dx.shape()),
       dh = full(context, {t.batch, t.k}, 0);
-  copy_tensor(g, poses);  // becomes the whole gradients
+  copy_tensor(g, poses);  // accumulates the total gradients
   GemmCall recur = product_with(self.inputs[3].value(), false, t.batch),
            see = product_with(self.inputs[5].value(), false, t.batch),
            move = product_with(self.inputs[6].value(), false, t.batch);
@@ -122,7 +121,7 @@ inline std::vector<Tensor> gru_rollout_backward(const GruTrace& t, const Node& s
   for (std::size_t i = steps; i-- > 0;) {
     if (i + 1 >= t.given) {
       const std::size_t j = i + 1 - t.given;
-      if (j < own) {  // the pose was moved on, and seen by the next step
+      if (j < own) {  // the next step reads this pose and adds to it
         see.a_offset[0] = t.gates_at(i + 1);
         see.c_offset = t.pose_at(j);
         see.residual_offset = t.pose_at(j + 1);
@@ -134,11 +133,11 @@ inline std::vector<Tensor> gru_rollout_backward(const GruTrace& t, const Node& s
     context.launch("gru", "gru_cell_backward", t.cells(), At{t.kept, 4 * t.state_at(i)},
                    At{t.states, t.state_at(i)}, dh, At{dx, t.gates_at(i)}, At{ds, t.gates_at(i)}, t.batch,
                    t.k);
-    if (i == 0) break;  // the first state is zero
+    if (i == 0) break;  // the initial state is a constant
     recur.a_offset[0] = t.gates_at(i);
     gemm(context, recur);
   }
-  // Weights: all steps in one product each.
+  // Weight gradients: one product each over all steps.
   const auto by_weight = [&](const Tensor& gradient, std::size_t first, const Tensor& rows,
                              std::size_t first_row, std::size_t count) {
     GemmCall call{.m = gradient.dim(2), .n = rows.dim(2), .k = count * t.batch, .a = gradient, .b = rows};
@@ -168,9 +167,10 @@ inline std::vector<Tensor> gru_rollout_backward(const GruTrace& t, const Node& s
 
 }  // namespace detail
 
-/// The `frames` poses [frames, B, M] that follow `last` [B, M]. `x_gates` [n, B, 3k] is W_i x + b_i of the
-/// poses given, `last` among them; `each` [B, 3k] what the gates of every later step see beside the pose.
-/// The state begins at zero.
+/// Predicts the `frames` poses [frames, B, M] that follow `last` [B, M]. `x_gates` [n, B, 3k] is W_i x + b_i
+/// for the given poses, of which `last` is the last; `each` [B, 3k] is added to the gates of every later step
+/// besides the pose's part. The initial state is zero. Throws Error if the shapes do not fit or there is no
+/// given or predicted frame.
 inline Var gru_rollout(const Var& x_gates, const Var& each, const Var& last, const GruRolloutWeights& w,
                        std::size_t frames) {
   const std::size_t k = w.recurrent.dim(1), dof = w.diff.dim(0), batch = last.dim(0);

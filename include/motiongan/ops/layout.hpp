@@ -1,20 +1,12 @@
-// Cutting, joining and moving rows and frames, with their derivatives.
+// Differentiable slicing, padding, concatenation, and gathering and shifting of rows and frames.
 #pragma once
 #include "motiongan/ops/reduce.hpp"
 
 namespace motiongan {
 
-/// The same numbers under another shape.
-inline Var reshape(const Var& x, Shape shape) {
-  return record("reshape", {x}, x.value().reshape(std::move(shape)),
-                [](const Node& self, const Var& g, const Needs&) -> std::vector<Var> {
-                  return {reshape(g, self.inputs[0].shape())};
-                });
-}
-
 namespace detail {
 
-/// A tensor seen as [outer, count, inner] around one axis.
+/// Views a tensor as [outer, count, inner] around one axis.
 struct AxisView {
   std::size_t outer = 1, count = 1, inner = 1;
   AxisView(const Shape& shape, std::size_t axis) : count(shape.at(axis)) {
@@ -22,7 +14,7 @@ struct AxisView {
   }
 };
 
-/// Copies `run` numbers from each of `outer` blocks of x (from `first` on, `stride` apart) to blocks of out.
+/// Copies `run` elements of each of `outer` blocks (starting at `first`, `stride` apart) from x to out.
 inline void copy_runs(const Tensor& x, std::size_t x_first, std::size_t x_stride, const Tensor& out,
                       std::size_t out_first, std::size_t out_stride, std::size_t outer, std::size_t run) {
   const Context& context = x.context();
@@ -31,14 +23,15 @@ inline void copy_runs(const Tensor& x, std::size_t x_first, std::size_t x_stride
                  out.view(out_first, {out.size() - out_first}), out_stride, outer, run);
 }
 
-/// Copies all of x to `to`, of the same size, on the device.
+/// Copies x to `to`, which has the same size.
 inline void copy_tensor(const Tensor& x, const Tensor& to) { copy_runs(x, 0, 0, to, 0, 0, 1, x.size()); }
 
 }  // namespace detail
 
 inline Var pad(const Var& x, std::size_t axis, std::size_t before, std::size_t after);
 
-/// `count` entries of an axis from `first` on.
+/// Entries first .. first + count - 1 of an axis; a view of the same data for the first axis. Throws Error if
+/// they exceed the axis.
 inline Var slice(const Var& x, std::size_t axis, std::size_t first, std::size_t count) {
   const detail::AxisView view(x.shape(), axis);
   require(first + count <= view.count, "slice: ", count, " entries from ", first, " of axis ", axis, " of ",
@@ -59,7 +52,7 @@ inline Var slice(const Var& x, std::size_t axis, std::size_t first, std::size_t 
                 });
 }
 
-/// Zeros before and after along an axis.
+/// Zero padding along an axis: `before` entries in front and `after` at the end.
 inline Var pad(const Var& x, std::size_t axis, std::size_t before, std::size_t after) {
   if (before + after == 0) return x;
   const detail::AxisView view(x.shape(), axis);
@@ -75,9 +68,9 @@ inline Var pad(const Var& x, std::size_t axis, std::size_t before, std::size_t a
                 });
 }
 
-/// Joins tensors along an axis; their other sizes are equal.
+/// Concatenates tensors along an axis. Throws Error if there are none or the other axes differ in size.
 inline Var concatenate(const std::vector<Var>& parts, std::size_t axis) {
-  require(!parts.empty(), "concatenate: nothing to join");
+  require(!parts.empty(), "concatenate: no tensors given, expected at least one");
   Shape shape = parts[0].shape();
   shape.at(axis) = 0;
   for (const Var& part : parts) {
@@ -109,15 +102,16 @@ inline Var concatenate(const std::vector<Var>& parts, std::size_t axis) {
                 });
 }
 
-/// How shift_frames() moves frames: out[t, b, :] = x[t + first + sign*offset[b], b, :], `outside` where there
-/// is no such frame.
+/// Parameters of shift_frames(): out[t, b, :] = x[t + first + sign*offset[b], b, :], or `outside` if there is
+/// no such frame.
 struct FrameShift {
   int first = 0, sign = 1;
   double outside = 0;
 };
 
-/// Moves each sample's frames by its own offset. x is [T, B, C], offset [B], the result [frames_out, B, C].
-/// Serves the input shift and the final cut (SPEC 2, 3).
+/// Shifts each sample's frames by its own offset: x [T, B, C], offset [B] -> [frames_out, B, C]. Used for
+/// DVGAN's input shift and final cut (Lin & Amer, sec. 4). Throws Error unless there is one offset per
+/// sample.
 inline Var shift_frames(const Var& x, const Indices& offset, std::size_t frames_out,
                         const FrameShift& shift = {}) {
   require(x.value().rank() == 3 && offset.size() == x.dim(1), "shift_frames: ", offset.size(),
@@ -136,9 +130,9 @@ inline Var shift_frames(const Var& x, const Indices& offset, std::size_t frames_
 
 inline Var pair_means_adjoint(const Var& g, std::size_t frames);
 
-/// Means of neighbouring frames, first the odd pairs (2t-1, 2t), t = 0..T/2, then the even ones (2t, 2t+1), t
-/// < T/2: [T, B, C] -> [2*(T/2)+1, B, C]. The even ones are `Down`; both together are what a convolution
-/// followed by Down needs.
+/// Means of neighbouring frames, first the odd pairs (2t-1, 2t), t = 0 .. T/2, then the even pairs (2t,
+/// 2t+1), t < T/2, with zero for frames outside: [T, B, C] -> [2*(T/2)+1, B, C]. The even pairs are DVGAN's
+/// `Down`; conv_down needs both.
 inline Var pair_means(const Var& x) {
   const std::size_t frames = x.dim(0), slab = x.size() / frames;
   Shape shape = x.shape();
@@ -152,6 +146,7 @@ inline Var pair_means(const Var& x) {
                 });
 }
 
+/// The adjoint of pair_means: [2*(T/2)+1, B, C] -> [T, B, C] with T = `frames`.
 inline Var pair_means_adjoint(const Var& g, std::size_t frames) {
   Shape shape = g.shape();
   const std::size_t slab = g.size() / shape[0];
@@ -165,7 +160,7 @@ inline Var pair_means_adjoint(const Var& g, std::size_t frames) {
 
 inline Var scatter_add_rows(const Var& x, const Indices& index, std::size_t rows);
 
-/// Rows of a table by index: [V, C], n indices -> [n, C].
+/// Rows of a table by index: [V, C], n indices -> [n, C]. The indices are not checked.
 inline Var gather_rows(const Var& table, const Indices& index) {
   const std::size_t rows = table.dim(0), channels = table.dim(1);
   Tensor value(table.context(), {index.size(), channels});
@@ -178,7 +173,8 @@ inline Var gather_rows(const Var& table, const Indices& index) {
                 });
 }
 
-/// The adjoint of gather_rows: rows with the same index are added, in their order. [n, C] -> [rows, C].
+/// The adjoint of gather_rows: sums rows with the same index, in order, so that reruns are bit-equal. [n, C]
+/// -> [rows, C].
 inline Var scatter_add_rows(const Var& x, const Indices& index, std::size_t rows) {
   const std::size_t channels = x.dim(1);
   Tensor value(x.context(), {rows, channels});

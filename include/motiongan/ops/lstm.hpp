@@ -1,5 +1,5 @@
-// One LSTM layer over time: fused for values, first derivatives and the second derivative that a gradient
-// penalty takes; composed of elementary operations for all other and higher ones.
+// One LSTM layer over time. Values, first derivatives and the second derivative needed by a gradient penalty
+// are fused; all other derivatives are composed of elementary operations.
 #pragma once
 #include "motiongan/ops/fused.hpp"
 #include "motiongan/ops/lstm_sweeps.hpp"
@@ -7,7 +7,7 @@
 
 namespace motiongan {
 
-/// h of every step, [T, B, k], out of lstm_layer's states.
+/// h of every step, [T, B, k], from the states of lstm_layer.
 inline Var hidden_states(const Var& states) {
   const std::size_t frames = states.dim(1), batch = states.dim(2), k = states.dim(3);
   return slice(reshape(states, {2 * frames, batch, k}), 0, 0, frames);
@@ -15,7 +15,7 @@ inline Var hidden_states(const Var& states) {
 
 namespace detail {
 
-/// The layer out of elementary operations; every derivative exists. Arguments and result as lstm_layer.
+/// lstm_layer composed of elementary operations, with derivatives of every order.
 inline Var lstm_layer_composed(const Var& x_gates, const Var& w_hh, const Var& h_first, const Var& c_first,
                                const Indices& lengths) {
   const std::size_t frames = x_gates.dim(0), batch = x_gates.dim(1), k = w_hh.dim(1);
@@ -50,9 +50,9 @@ inline Var lstm_layer_composed(const Var& x_gates, const Var& w_hh, const Var& h
   return concatenate({concatenate(all_h, 1), concatenate(all_c, 1)}, 0);
 }
 
-/// The gradient of lstm_layer by its gates, [T, B, 4k], as an operation of its own: this is what a gradient
-/// penalty differentiates once more. First states are constant, every sample runs to T. Its own first
-/// derivative is fused, higher ones are composed.
+/// The gradient of lstm_layer with respect to its gates, [T, B, 4k], as an operation: a gradient penalty
+/// differentiates it again. Initial states are constant and there are no `lengths`. Its first derivative is
+/// fused, higher ones are composed.
 inline Var lstm_layer_grad(const Var& g, const Var& x_gates, const Var& w_hh, const LstmPass& pass,
                             bool only_h) {
   const LstmGradients first = lstm_backward(pass, g.value(), {.keep_totals = true});
@@ -71,7 +71,7 @@ inline Var lstm_layer_grad(const Var& g, const Var& x_gates, const Var& w_hh, co
       });
 }
 
-/// lstm_layer, or h alone of its states.
+/// lstm_layer, or with `only_h` only the h of its states.
 inline Var lstm_layer_fused(const Var& x_gates, const Var& w_hh, const Var& h_first, const Var& c_first,
                             const Indices& lengths, bool only_h) {
   const std::size_t batch = x_gates.dim(1), k = w_hh.dim(1), slab = batch * k;
@@ -95,7 +95,7 @@ inline Var lstm_layer_fused(const Var& x_gates, const Var& w_hh, const Var& h_fi
         return only_h ? hidden_states(states) : states;
       },
       [pass, only_h](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
-        // With respect to the gates alone (a gradient penalty), the second derivative is fused as well.
+        // With respect to the gates alone, as in a gradient penalty, the second derivative is fused too.
         const auto& in = self.inputs;
         if (needs != Needs{true, false, false, false} || !pass.lengths.empty() || in[2].requires_grad() ||
             in[3].requires_grad())
@@ -106,22 +106,23 @@ inline Var lstm_layer_fused(const Var& x_gates, const Var& w_hh, const Var& h_fi
 
 }  // namespace detail
 
-/// One LSTM layer as PyTorch's (gates i, f, g, o). `x_gates` [T, B, 4k] is W_ih x + b_ih + b_hh, `w_hh` [4k,
-/// k], `h_first`, `c_first` [B, k]. A sample keeps its state from step lengths[b] on (`lengths` may be empty:
-/// all run to T). Returns all states, [2, T, B, k]: h of every step, then c of every step.
+/// One LSTM layer as in PyTorch (gate order i, f, g, o). `x_gates` [T, B, 4k] is W_ih x + b_ih + b_hh, `w_hh`
+/// is [4k, k], `h_first` and `c_first` are [B, k]. Sample b keeps its state after lengths[b] steps (empty:
+/// all run for T steps). Returns all states, [2, T, B, k]: h of every step, then c of every step. Throws
+/// Error if the shapes do not fit.
 inline Var lstm_layer(const Var& x_gates, const Var& w_hh, const Var& h_first, const Var& c_first,
                       const Indices& lengths = {}) {
   return detail::lstm_layer_fused(x_gates, w_hh, h_first, c_first, lengths, false);
 }
 
-/// h of every step, [T, B, k], of a layer that starts from zeros: what hidden_states() takes out of
-/// lstm_layer's result, without carrying c and its gradient along.
+/// h of every step, [T, B, k], of an LSTM layer with zero initial state: hidden_states() of lstm_layer, but
+/// without carrying c and its gradient along.
 inline Var lstm_hidden(const Var& x_gates, const Var& w_hh) {
   const Var zero = zeros(x_gates.context(), {x_gates.dim(1), w_hh.dim(1)});
   return detail::lstm_layer_fused(x_gates, w_hh, zero, zero, {}, true);
 }
 
-/// The last h or c of every sample, [B, k], out of lstm_layer's states; kind 0 is h, 1 is c.
+/// The final h (kind 0) or c (kind 1) of every sample, [B, k], from the states of lstm_layer.
 inline Var last_state(const Var& states, std::size_t kind) {
   const std::size_t frames = states.dim(1), batch = states.dim(2), k = states.dim(3);
   return reshape(slice(reshape(states, {2 * frames, batch, k}), 0, kind * frames + frames - 1, 1),

@@ -1,25 +1,25 @@
-// One step of an LSTM layer whose weights are used again and again: product and cell, in one kernel on the
-// native engine of gemm().
+// One step of an LSTM layer, for weights that are used in many steps: matrix product and cell, in one kernel
+// on the native gemm() backend.
 #pragma once
 #include "motiongan/core/gemm.hpp"
 #include "motiongan/ops/reduce.hpp"
 
 namespace motiongan::detail {
 
-/// What a step reads and writes; every place is a tensor and the number of its first element.
+/// The operands of one step, each a tensor and the index of its first element.
 struct LstmStep {
   std::size_t batch;
-  At rows;            ///< what the layer sees, [batch, in] in rows of `width`
-  std::size_t width;  ///< of the rows that are read, and of those that h is written to
-  At extra;           ///< [batch, 4k] or, with extra_is_bias, [4k]
+  At rows;            ///< the layer's input, [batch, in], in rows of `width`
+  std::size_t width;  ///< row stride of `rows` and of `h`
+  At extra;           ///< added to the gates: [batch, 4k] or, with extra_is_bias, [4k]
   bool extra_is_bias;
-  At c_before, h, c;  ///< [batch, k]; h in rows of `width`
-  At gates;           ///< [batch, 4k], activated
-  bool keep_gates;    ///< whether they are wanted; the memory is needed anyhow
+  At c_before, h, c;  ///< [batch, k], h in rows of `width`
+  At gates;           ///< activated gates, [batch, 4k]
+  bool keep_gates;    ///< whether gates are needed afterwards; if not, still used as scratch memory
 };
 
-/// One LSTM layer: gates = rows W^T + extra (PyTorch's order i, f, g, o), then c and h. W [4k, in] is read
-/// when this is made.
+/// One LSTM layer: gates = rows W^T + extra (order i, f, g, o), then c and h. The constructor packs W
+/// [4k, in]; later changes of W have no effect on the native backend.
 class LstmStepper {
  public:
   LstmStepper() = default;

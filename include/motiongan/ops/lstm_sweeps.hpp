@@ -1,13 +1,12 @@
-// The passes of one LSTM layer over its steps, values only: forwards, its gradient, and the gradient of that
-// gradient. Each step is one matrix product and one pointwise kernel of cl/lstm.cl. lstm.hpp makes
-// differentiable operations of them.
+// Forward, backward and double-backward passes of one LSTM layer on tensors; lstm.hpp turns them into
+// differentiable operations. Each step is one matrix product and one pointwise kernel of cl/lstm.cl.
 #pragma once
 #include "motiongan/ops/lstm_step.hpp"
 #include "motiongan/ops/reduce.hpp"
 
 namespace motiongan::detail {
 
-/// Something that may be absent, as a kernel argument: a null buffer then.
+/// An optional kernel argument: a null buffer if empty.
 template <class T>
 struct Maybe {
   const T& value;
@@ -21,10 +20,10 @@ inline void add_argument(KernelArguments& to, const Maybe<Indices>& indices) {
   to.set(indices.value.empty() ? static_cast<cl_mem>(nullptr) : indices.value.buffer());
 }
 
-/// What the forward pass was given and leaves for the derivatives.
+/// Inputs and results of the forward pass, kept for the derivatives.
 struct LstmPass {
   Tensor w_hh, h_first, c_first;  // [4k, k], [B, k], [B, k]
-  Indices lengths;                // [B] or absent
+  Indices lengths;                // [B] or empty
   Tensor gates;                   // activations, [T, B, 4k]
   Tensor states;                  // h of every step, then c of every step, [2, T, B, k]
 
@@ -35,11 +34,11 @@ struct LstmPass {
   std::size_t slab() const { return batch() * hidden(); }
   LaunchGrid grid() const { return LaunchGrid::items(batch() * vectors(context(), hidden())); }
 
-  /// Step t of something shaped as the gates, [B, 4k].
+  /// Step t of `all` [T, B, 4k]: [B, 4k].
   Tensor gates_at(const Tensor& all, std::size_t t) const {
     return all.view(t * 4 * slab(), {batch(), 4 * hidden()});
   }
-  /// Step t of something of [T, B, k]; kind 1 is the second half of something of [2, T, B, k].
+  /// Step t of `all` [T, B, k], or of its second half (kind 1) if `all` is [2, T, B, k]: [B, k].
   Tensor state_at(const Tensor& all, std::size_t t, std::size_t kind = 0) const {
     return all.view((kind * frames() + t) * slab(), {batch(), hidden()});
   }
@@ -48,13 +47,12 @@ struct LstmPass {
   Tensor h_before(std::size_t t) const { return t > 0 ? state_at(states, t - 1) : h_first; }
 };
 
-/// The weights are the same at every step: they are packed once for all, where there are enough to pay for
-/// it.
+/// Packs the weights once for all steps, if there are enough steps to amortise it.
 inline void pack_weights(const LstmPass& pass, GemmCall& call) {
   if (pass.frames() > 8) call.b_panels = pack_b(pass.context(), call);
 }
 
-/// to[t] = h W_hh^T + from[t], with h [B, k] and t yet to be named: what a state does to the next gates.
+/// to[t] = h W_hh^T + from[t], the gates of step t; run_step() sets h [B, k] and t.
 inline GemmCall recurrence(const LstmPass& pass, const Tensor& from, const Tensor& to) {
   GemmCall call;
   call.m = pass.batch();
@@ -73,8 +71,8 @@ inline void run_step(const LstmPass& pass, GemmCall& recurrence, const Tensor& h
   gemm(pass.context(), recurrence);
 }
 
-/// to = rows W_hh, or +=, with rows [B, 4k] yet to be named: what the gradient of gates does to the state
-/// before, [B, k].
+/// to = rows W_hh, or += with `accumulate`: the gradient of the previous state, [B, k], from that of the
+/// gates; run_step() sets rows [B, 4k].
 inline GemmCall recurrence_gradient(const LstmPass& pass, const Tensor& to, bool accumulate) {
   GemmCall call;
   call.m = pass.batch();
@@ -91,8 +89,9 @@ inline void run_step(const LstmPass& pass, GemmCall& recurrence_gradient, const 
   gemm(pass.context(), recurrence_gradient);
 }
 
-/// sum over t of rows[t]^T h[t-1], [4k, k], all steps in one product; the first step's, with `first`, is
-/// added (absent: left out). rows is [T, B, 4k], h [T, B, k] or more. The gradient of the recurrent weights.
+/// The gradient of the recurrent weights, sum over t of rows[t]^T h[t-1], [4k, k], in one product over all
+/// steps. `first` is h before the first step; if empty, that step is left out. rows is [T, B, 4k], h
+/// [T, B, k] or longer.
 inline Tensor weight_gradient(const LstmPass& pass, const Tensor& rows, const Tensor& h,
                               const Tensor& first) {
   const std::size_t k = pass.hidden();
@@ -111,7 +110,7 @@ inline Tensor weight_gradient(const LstmPass& pass, const Tensor& rows, const Te
   return call.c;
 }
 
-/// Runs the layer over x_gates [T, B, 4k].
+/// Runs the layer over x_gates [T, B, 4k], see lstm_layer.
 inline LstmPass lstm_forward(const Tensor& x_gates, const Tensor& w_hh, const Tensor& h_first,
                              const Tensor& c_first, const Indices& lengths) {
   const std::size_t frames = x_gates.dim(0), batch = x_gates.dim(1), k = w_hh.dim(1);
@@ -148,16 +147,16 @@ inline LstmPass lstm_forward(const Tensor& x_gates, const Tensor& w_hh, const Te
 }
 
 struct LstmGradients {
-  Tensor gates;             // of the gates before activation, [T, B, 4k]
-  Tensor h_first, c_first;  // [B, k]; h_first only where asked
-  Tensor totals;            // where kept: whole gradients of h, then of c, of every step, [2, T, B, k]
+  Tensor gates;             // of the pre-activation gates, [T, B, 4k]
+  Tensor h_first, c_first;  // [B, k]; h_first only on request
+  Tensor totals;            // on request: total gradients of h, then of c, of every step, [2, T, B, k]
 };
 
 struct LstmBackward {
   bool h_first = false, keep_totals = false;
 };
 
-/// Gradients of <g, states>; g is [2, T, B, k], or [T, B, k] where c has no gradient from outside.
+/// Gradients of <g, states>; g is [2, T, B, k], or [T, B, k] if it has no part for c.
 inline LstmGradients lstm_backward(const LstmPass& pass, const Tensor& g, const LstmBackward& options) {
   const Context& context = pass.context();
   const std::size_t frames = pass.frames(), batch = pass.batch(), k = pass.hidden();
@@ -183,12 +182,13 @@ inline LstmGradients lstm_backward(const LstmPass& pass, const Tensor& g, const 
 
 struct LstmDoubleBackward {
   Tensor g;      // [2, T, B, k]
-  Tensor gates;  // of x_gates, [T, B, 4k]; absent unless asked
-  Tensor w_hh;   // [4k, k]; absent unless asked
+  Tensor gates;  // of x_gates, [T, B, 4k]; on request
+  Tensor w_hh;   // [4k, k]; on request
 };
 
-/// Gradients of <u, gradient> by g, x_gates and w_hh, where gradient(g, x_gates, w_hh) [T, B, 4k] is `gates` of
-/// lstm_backward, and `totals` what that kept; first states are constant, no lengths.
+/// Gradients of <u, gradient> with respect to g, x_gates and w_hh, where gradient(g, x_gates, w_hh)
+/// [T, B, 4k] is `gates` of lstm_backward and `totals` what that kept. Initial states are constant and there
+/// are no `lengths`.
 inline LstmDoubleBackward lstm_double_backward(const LstmPass& pass, const Tensor& gradient,
                                                const Tensor& totals, const Tensor& u, bool of_gates,
                                                bool of_w_hh) {

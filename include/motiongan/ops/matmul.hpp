@@ -1,12 +1,12 @@
-// Matrix products, one or a batch of them.
+// Differentiable matrix products, single or batched.
 #pragma once
 #include "motiongan/core/gemm.hpp"
 #include "motiongan/ops/layout.hpp"
 
 namespace motiongan {
 
-/// op(a) * op(b) for matrices [m, k] and [k, n], or for batches of them [batch, m, k] and [batch, k, n];
-/// `a_transposed` means that a is stored [k, m], likewise b.
+/// a * b for matrices [m, k] and [k, n], or for batches [batch, m, k] and [batch, k, n]. With `a_transposed`,
+/// a is stored as [k, m]; with `b_transposed`, b as [n, k]. Throws Error if the shapes do not fit.
 inline Var matmul(const Var& a, const Var& b, bool a_transposed = false, bool b_transposed = false) {
   const std::size_t rank = a.value().rank();
   require((rank == 2 || rank == 3) && b.value().rank() == rank && (rank == 2 || a.dim(0) == b.dim(0)),
@@ -35,7 +35,7 @@ inline Var matmul(const Var& a, const Var& b, bool a_transposed = false, bool b_
   return record(
       "matmul", {a, b}, call.c, [=](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
         const Var &ai = self.inputs[0], &bi = self.inputs[1];
-        Var by_a, by_b;  // stored as a and b are: the product is transposed where they are
+        Var by_a, by_b;  // stored like a and b, transposed if they are
         if (needs[0])
           by_a = a_transposed ? matmul(bi, g, b_transposed, true) : matmul(g, bi, false, !b_transposed);
         if (needs[1])

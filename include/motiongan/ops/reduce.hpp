@@ -1,17 +1,20 @@
-// Sums over an axis and their adjoint, broadcasting along one; what is made of them: means, pooling, softmax.
-// Inside, a tensor is seen as [outer, count, inner] around the axis.
+// Reductions over an axis, broadcasting (their adjoint), and operations built on them: means, pooling,
+// softmax. Internally a tensor is viewed as [outer, count, inner] around the axis.
 #pragma once
 #include "motiongan/ops/elementwise.hpp"
+#include "motiongan/ops/reshape.hpp"
 
 namespace motiongan {
 
 namespace detail {
 
+/// The number of vectors that hold n elements.
 inline std::size_t vectors(const Context& context, std::size_t n) {
   return (n + context.vector_width() - 1) / context.vector_width();
 }
 
-/// [outer, count, inner] -> [outer, inner], times scale.
+/// scale * sum over the middle axis: [outer, count, inner] -> [outer, inner]. The order of summation is
+/// fixed.
 inline Tensor sum_axis_value(const Tensor& x, std::size_t outer, std::size_t count, std::size_t inner,
                                double scale, Shape shape) {
   const Context& context = x.context();
@@ -20,7 +23,7 @@ inline Tensor sum_axis_value(const Tensor& x, std::size_t outer, std::size_t cou
     context.launch("reduce", "sum_rows", LaunchGrid::items(outer), x, out, outer, count, KernelReal{scale});
     return out;
   }
-  // Long sums over few columns go in two stages, so that there is work for every core; the order stays fixed.
+  // Long sums over few columns run in two stages to give every core work; the order stays fixed.
   const std::size_t columns = vectors(context, inner);
   constexpr std::size_t piece = 64, enough_items = 2048;
   if (count > 2 * piece && outer * columns < enough_items) {
@@ -37,6 +40,7 @@ inline Tensor sum_axis_value(const Tensor& x, std::size_t outer, std::size_t cou
   return out;
 }
 
+/// scale * x repeated along a new middle axis: [outer, inner] -> [outer, count, inner].
 inline Tensor broadcast_axis_value(const Tensor& x, std::size_t outer, std::size_t count, std::size_t inner,
                            double scale, Shape shape) {
   const Context& context = x.context();
@@ -53,8 +57,8 @@ inline Tensor broadcast_axis_value(const Tensor& x, std::size_t outer, std::size
 inline Var broadcast_axis(const Var& x, std::size_t outer, std::size_t count, std::size_t inner, double scale,
                           Shape shape);
 
-/// scale * sum over the middle axis of x seen as [outer, count, inner]; the result has `shape` (outer*inner
-/// numbers).
+/// scale * sum over the middle axis of x viewed as [outer, count, inner]; the result has shape `shape`, of
+/// outer * inner elements. Throws Error if the sizes do not fit.
 inline Var sum_axis(const Var& x, std::size_t outer, std::size_t count, std::size_t inner, double scale,
                     Shape shape) {
   require(x.size() == outer * count * inner && element_count(shape) == outer * inner, "sum_axis: ", x.shape(),
@@ -66,8 +70,8 @@ inline Var sum_axis(const Var& x, std::size_t outer, std::size_t count, std::siz
                 });
 }
 
-/// scale * x repeated along a new middle axis: x is seen as [outer, inner], the result, of `shape`, as
-/// [outer, count, inner].
+/// scale * x repeated along a new middle axis: [outer, inner] -> [outer, count, inner], returned with shape
+/// `shape`. Throws Error if the sizes do not fit.
 inline Var broadcast_axis(const Var& x, std::size_t outer, std::size_t count, std::size_t inner, double scale,
                           Shape shape) {
   require(x.size() == outer * inner && element_count(shape) == outer * count * inner, "broadcast_axis: ",
@@ -81,15 +85,15 @@ inline Var broadcast_axis(const Var& x, std::size_t outer, std::size_t count, st
 
 }  // namespace detail
 
-/// Sum of all numbers, [1].
+/// Sum of all elements, [1].
 inline Var sum(const Var& x) { return detail::sum_axis(x, 1, x.size(), 1, 1, {1}); }
-/// Mean of all numbers, [1].
+/// Mean of all elements, [1].
 inline Var mean(const Var& x) {
   return detail::sum_axis(x, 1, x.size(), 1, 1.0 / static_cast<double>(x.size()), {1});
 }
 
-/// scale * sum over one axis, which is removed: [2, 3, 5] over axis 1 -> [2, 5]. A negative axis counts from
-/// the last, -1.
+/// scale * sum over one axis, which is removed: [2, 3, 5] over axis 1 -> [2, 5]. Negative axes count from the
+/// end, -1 is the last. Throws Error if there is no such axis.
 inline Var sum(const Var& x, int axis, double scale = 1) {
   const auto rank = static_cast<int>(x.value().rank());
   require(axis >= -rank && axis < rank, "sum: axis ", axis, " of ", x.shape(), ", expected ", -rank, " to ",
@@ -104,7 +108,7 @@ inline Var sum(const Var& x, int axis, double scale = 1) {
   return detail::sum_axis(x, outer, count, inner, scale, std::move(shape));
 }
 
-/// Mean over one axis, which is removed.
+/// Mean over one axis, which is removed, as in sum().
 inline Var mean(const Var& x, int axis) {
   const auto rank = static_cast<int>(x.value().rank());
   const auto at = static_cast<std::size_t>(axis < 0 ? axis + rank : axis);
@@ -114,8 +118,8 @@ inline Var mean(const Var& x, int axis) {
 /// Sum over frames and channels: [T, B, C] -> [B].
 inline Var sum_per_sample(const Var& x) { return sum(sum(x, 0), -1); }
 
-/// x repeated to `shape` by the rules of NumPy and PyTorch: shapes are compared from the last axis, missing
-/// axes and those of size 1 are repeated. [B, 1] -> [T, B, C].
+/// Broadcasts x to `shape` by the rules of NumPy and PyTorch: missing leading axes and axes of size 1 are
+/// repeated, e.g. [B, 1] -> [T, B, C]. Throws Error if the shapes are incompatible.
 inline Var broadcast_to(const Var& x, const Shape& shape) {
   const Shape& from = x.shape();
   require(from.size() <= shape.size(), "broadcast_to: ", from, " has more axes than ", shape);
@@ -126,7 +130,7 @@ inline Var broadcast_to(const Var& x, const Shape& shape) {
   Var y = x;
   for (std::size_t last = shape.size(); last-- > 0;) {
     if (at[last] == shape[last]) continue;
-    std::size_t first = last;  // neighbouring axes of size 1 are repeated in one pass
+    std::size_t first = last;  // neighbouring axes of size 1 are broadcast in one pass
     while (first > 0 && at[first - 1] == 1) --first;
     std::size_t outer = 1, count = 1, inner = 1;
     for (std::size_t i = 0; i < first; ++i) outer *= at[i];
@@ -135,32 +139,33 @@ inline Var broadcast_to(const Var& x, const Shape& shape) {
     y = detail::broadcast_axis(y, outer, count, inner, 1, at);
     last = first;
   }
-  return y;
+  return y.shape() == shape ? y : reshape(y, shape);
 }
 
-/// Nearest-neighbour upsampling along the first axis (DVGAN's `Up` for times = 2): [T, ...] -> [times*T,
-/// ...].
+/// scale * nearest-neighbour upsampling along the first axis: [T, ...] -> [times*T, ...]. DVGAN's `Up` for
+/// times = 2.
 inline Var upsample_nearest(const Var& x, std::size_t times, double scale = 1) {
   Shape shape = x.shape();
   shape[0] *= times;
   return detail::broadcast_axis(x, x.dim(0), times, x.size() / x.dim(0), scale, std::move(shape));
 }
 
-/// scale * sums of `times` neighbouring frames: [times*T, ...] -> [T, ...]. With times = 2 and scale = 1/2
-/// this is average pooling, DVGAN's `Down`.
+/// scale * sum over groups of `times` consecutive frames: [times*T, ...] -> [T, ...]. With times = 2 and
+/// scale = 1/2 this is average pooling, DVGAN's `Down`.
 inline Var sum_pool(const Var& x, std::size_t times, double scale = 1) {
   Shape shape = x.shape();
   shape[0] /= times;
   return detail::sum_axis(x, shape[0], times, x.size() / x.dim(0), scale, shape);
 }
 
-/// Rows of length 1, x / |x|: [rows, n] -> [rows, n]; a row of zeros stays one.
+/// Normalises every row to unit length: [rows, n] -> [rows, n]; a zero row stays zero.
 inline Var normalize_rows(const Var& x) {
   const std::size_t rows = x.dim(0), n = x.dim(1);
   return x / detail::broadcast_axis(sqrt(sum(square(x), -1) + 1e-24), rows, n, 1, 1, {rows, n});
 }
 
-/// relu(big + small repeated): big is [count*T, ...], small [T, ...]. One pass instead of three.
+/// relu(big + small), with each frame of small added to `count` consecutive frames of big: [count*T, ...],
+/// [T, ...] -> [count*T, ...]. One pass instead of three. Throws Error if the shapes do not fit.
 inline Var relu_of_sum(const Var& big, const Var& small) {
   require(big.size() % small.size() == 0 && big.size() / big.dim(0) * small.dim(0) == small.size(),
           "relu_of_sum: shapes ", big.shape(), " and ", small.shape());
@@ -177,7 +182,7 @@ inline Var relu_of_sum(const Var& big, const Var& small) {
                 });
 }
 
-/// Softmax over the last axis, [..., n].
+/// Softmax over the last axis.
 inline Var softmax(const Var& x) {
   const std::size_t n = x.shape().back(), rows = x.size() / n;
   Tensor value(x.context(), x.shape());
@@ -189,7 +194,7 @@ inline Var softmax(const Var& x) {
                 });
 }
 
-/// Logarithm of softmax over the last axis, [..., n]: finite where softmax itself would round to 0.
+/// Logarithm of the softmax over the last axis; finite even where the softmax underflows to 0.
 inline Var log_softmax(const Var& x) {
   const std::size_t n = x.shape().back(), rows = x.size() / n;
   Tensor value(x.context(), x.shape());

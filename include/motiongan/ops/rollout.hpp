@@ -1,12 +1,12 @@
-// A recurrent generator fed with its own output (SPEC 2, RNN generator): all steps as one operation, with a
-// fused value and first derivative and a composed form for higher ones.
+// Autoregressive rollout of DVGAN's RNN generator (Lin & Amer, eq. 4): all steps as one operation, with fused
+// value and first derivative and a composed form for higher ones.
 //
-// In step t two LSTM layers of k see what was made before, and their output moves it on:
+// In step t two LSTM layers of hidden size k read the previous pose and predict the change of pose:
 //   gates0_t = x_t + [a_{t-1} | h0_{t-1}] W0^T        h0_t, c0_t = cell(gates0_t, c0_{t-1})
 //   gates1_t = b1  + [h0_t | h1_{t-1}] W1^T           h1_t, c1_t = cell(gates1_t, c1_{t-1})
-//   a_t = a_{t-1} + h1_t Wd^T + bd                    (or what is given, for the first frames)
-// The rows of a step are kept as [a_t | h0_t | h1_{t-1}], so that what either layer sees is one piece of a
-// row and each takes one matrix product.
+//   a_t = a_{t-1} + h1_t Wd^T + bd                    (or the given pose, for seed frames)
+// The rows of a step are stored as [a_t | h0_t | h1_{t-1}], so that the input of each layer is contiguous
+// within a row and needs one matrix product.
 #pragma once
 #include "motiongan/ops/fused.hpp"
 #include "motiongan/ops/lstm_step.hpp"
@@ -14,10 +14,10 @@
 
 namespace motiongan {
 
-/// The weights of a rollout; M numbers a pose, k hidden ones.
+/// The weights of rollout, for poses of M dimensions and hidden size k.
 struct RolloutWeights {
-  Var layer0;     ///< W0 [4k, M + k]: what pose and state do to the first layer's gates
-  Var layer1;     ///< W1 [4k, 2k]: what both states do to the second layer's
+  Var layer0;     ///< W0 [4k, M + k]: from [pose | h0] to the first layer's gates
+  Var layer1;     ///< W1 [4k, 2k]: from [h0 | h1] to the second layer's gates
   Var bias1;      ///< b1 [4k]
   Var diff;       ///< Wd [M, k]
   Var diff_bias;  ///< bd [M]
@@ -25,28 +25,28 @@ struct RolloutWeights {
 
 namespace detail {
 
-/// Sizes and places of a rollout: rows [a_t | h0_t | h1_{t-1}] of all samples, for t = 0 .. N.
+/// Sizes and offsets of a rollout: rows [a_t | h0_t | h1_{t-1}] of all samples, for t = 0 .. N.
 struct RolloutShape {
   std::size_t frames, batch, dof, k, given;
   std::size_t width() const { return dof + 2 * k; }
   std::size_t slab() const { return batch * width(); }
   std::size_t pose_at(std::size_t t) const { return t * slab(); }
   std::size_t h0_at(std::size_t t) const { return t * slab() + dof; }
-  /// h1 of step t stands in the rows of step t + 1.
+  /// h1 of step t is stored in the rows of step t + 1.
   std::size_t h1_at(std::size_t t) const { return (t + 1) * slab() + dof + k; }
   std::size_t state_at(std::size_t t) const { return t * batch * k; }
-  std::size_t gates_at(std::size_t t) const { return (t - 1) * batch * 4 * k; }  // from step 1 on
+  std::size_t gates_at(std::size_t t) const { return (t - 1) * batch * 4 * k; }  // t >= 1
   LaunchGrid cells(const Context& context) const { return LaunchGrid::items(batch * vectors(context, k)); }
 };
 
-/// What the forward pass keeps: rows [N + 1, B, M + 2k], activated gates [N - 1, B, 4k] and cell states
-/// [N, B, k] of both layers.
+/// What the forward pass keeps for the backward pass: rows [N + 1, B, M + 2k], and activated gates
+/// [N - 1, B, 4k] and cell states [N, B, k] of both layers.
 struct RolloutTrace {
   RolloutShape shape;
   Tensor rows, gates0, gates1, c0, c1;
 };
 
-/// The weights of the two layers, ready for many steps.
+/// The two LSTM layers with packed weights.
 struct RolloutLayers {
   LstmStepper first, second;
   RolloutLayers() = default;
@@ -54,7 +54,7 @@ struct RolloutLayers {
       : first(context, w.layer0.value()), second(context, w.layer1.value()) {}
 };
 
-/// With `keep`, the trace holds the gates of all steps, for rollout_backward.
+/// Runs all steps. `keep` keeps the gates of all steps, as rollout_backward needs them.
 inline RolloutTrace rollout_forward(const Tensor& given, const Tensor& x_gates, const RolloutWeights& w,
                                     bool keep) {
   const Context& context = given.context();
@@ -69,7 +69,7 @@ inline RolloutTrace rollout_forward(const Tensor& given, const Tensor& x_gates, 
   const auto clear = [&](const Tensor& t) {
     context.launch("elementwise", "fill", vector_grid(t), t, t.size(), KernelReal{0});
   };
-  clear(trace.rows.view(0, {2 * s.slab()}));  // the states before the first step
+  clear(trace.rows.view(0, {2 * s.slab()}));  // the initial states
   clear(trace.c0.view(0, {batch * k}));
   clear(trace.c1.view(0, {batch * k}));
   copy_runs(given, 0, s.dof, trace.rows, 0, s.width(), s.given * batch, s.dof);
@@ -109,13 +109,13 @@ inline RolloutTrace rollout_forward(const Tensor& given, const Tensor& x_gates, 
   return trace;
 }
 
-/// Gradients by given, x_gates, W0, W1, b1, Wd, bd of a rollout whose motion has gradient g [N, B, M].
+/// Gradients with respect to given, x_gates, W0, W1, b1, Wd and bd, given the motion's gradient g [N, B, M].
 inline std::vector<Tensor> rollout_backward(const RolloutTrace& trace, const Node& self, const Tensor& g,
                                          const Needs& needs) {
   const Context& context = g.context();
   const RolloutShape& s = trace.shape;
   const std::size_t k = s.k, batch = s.batch, frames = s.frames;
-  // Gradients of the rows, gathered from the steps that read them.
+  // Gradients of the rows, accumulated from the steps that read them.
   const Tensor rows = full(context, trace.rows.shape(), 0);
   copy_runs(g, 0, s.dof, rows, 0, s.width(), frames * batch, s.dof);
   const Tensor gates0(context, trace.gates0.shape()), gates1(context, trace.gates1.shape()),
@@ -156,7 +156,7 @@ inline std::vector<Tensor> rollout_backward(const RolloutTrace& trace, const Nod
     first.c_offset = s.pose_at(t - 1);
     gemm(context, first);
   }
-  // Weights: all steps in one product each.
+  // Weight gradients: one product each over all steps.
   const auto by_weight = [&](const Tensor& gradient, std::size_t first_gradient, std::size_t gradient_ld,
                              std::size_t seen, std::size_t m, std::size_t n, std::size_t steps) {
     GemmCall call{.m = m, .n = n, .k = steps * batch};
@@ -185,7 +185,7 @@ inline std::vector<Tensor> rollout_backward(const RolloutTrace& trace, const Nod
   return out;
 }
 
-/// The same motion out of elementary operations; every derivative exists.
+/// rollout composed of elementary operations, with derivatives of every order.
 inline Var rollout_composed(const Var& given, const Var& x_gates, const RolloutWeights& w) {
   const std::size_t frames = x_gates.dim(0) + 1, batch = given.dim(1), dof = given.dim(2), k = w.diff.dim(1);
   const Context& context = given.context();
@@ -212,9 +212,9 @@ inline Var rollout_composed(const Var& given, const Var& x_gates, const RolloutW
 
 }  // namespace detail
 
-/// Motion [N, B, M] that begins with `given` [n, B, M], 1 <= n <= N, and goes on by itself. `x_gates`
-/// [N-1, B, 4k] is what else the first layer's gates of steps 1 .. N-1 see, biases included. States begin at
-/// zero and also run over the given frames.
+/// Generates a motion [N, B, M] that continues the seed frames `given` [n, B, M], 1 <= n <= N (Lin & Amer,
+/// eq. 4). `x_gates` [N-1, B, 4k] is added to the first layer's gates of steps 1 .. N-1: plots and biases.
+/// Initial states are zero; the LSTM also runs over the seed frames. Throws Error if the shapes do not fit.
 inline Var rollout(const Var& given, const Var& x_gates, const RolloutWeights& w) {
   const std::size_t k = w.diff.dim(1), dof = w.diff.dim(0), frames = x_gates.dim(0) + 1;
   require(given.value().rank() == 3 && given.dim(2) == dof && given.dim(0) >= 1 && given.dim(0) <= frames &&

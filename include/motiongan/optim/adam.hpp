@@ -1,16 +1,29 @@
-// Adam, equal to PyTorch's to rounding.
+// The Adam optimizer (Kingma & Ba 2015), equal to PyTorch's up to rounding.
 #pragma once
 #include <cmath>
 
+#include "motiongan/core/fields.hpp"
 #include "motiongan/optim/optimizer.hpp"
 
 namespace motiongan {
 
-/// Defaults are SPEC 4's.
+/// The defaults are those of WGAN-GP training, see docs/training.md.
 struct AdamOptions {
   double learning_rate = 1e-4, beta1 = 0.5, beta2 = 0.9, epsilon = 1e-8;
+
+  void list_fields(FieldList& list) {
+    list.add(learning_rate, {.key = "learning_rate", .help = "Adam's step size", .range = Range::above(0)});
+    list.add(beta1, {.key = "beta1",
+                     .help = "Adam's decay rate of the mean of gradients",
+                     .range = Range::between(0, 0.9999999)});
+    list.add(beta2, {.key = "beta2",
+                     .help = "Adam's decay rate of the mean of squared gradients",
+                     .range = Range::between(0, 0.9999999)});
+    list.add(epsilon, {.key = "epsilon", .help = "added to Adam's denominator", .range = Range::at_least(0)});
+  }
 };
 
+/// Adam with bias correction. Its state is the running means of the gradients and of their squares.
 class Adam : public Optimizer {
  public:
   explicit Adam(const std::vector<NamedParameter>& parameters, AdamOptions options = {})
@@ -25,14 +38,15 @@ class Adam : public Optimizer {
     return {{"mean", mean_}, {"square", square_}};
   }
 
-  /// Brings every parameter into [-limit, limit]: the weight clipping of the first Wasserstein GAN.
+  /// Clips every parameter to [-limit, limit], as in the original WGAN (Arjovsky et al. 2017). Throws Error
+  /// unless limit > 0.
   void clip(double limit) {
-    require(limit > 0, "Adam: parameters cannot be clipped at ", limit, ", expected a number above 0");
+    require(limit > 0, "Adam: the clipping limit is ", limit, ", expected a number above 0");
     context().launch("elementwise", "clamp_of", detail::vector_grid(values()), values(), values(),
                      values().size(), KernelReal{-limit}, KernelReal{limit});
   }
 
-  /// The running means: all parameters one after the other.
+  /// Running means of the gradients and of their squares, all parameters concatenated: [n].
   Tensor& mean() { return mean_; }
   Tensor& square() { return square_; }
 

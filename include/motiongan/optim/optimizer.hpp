@@ -1,4 +1,4 @@
-// What all optimisers share: the parameters in one buffer, so that one launch updates them all.
+// Base class of the optimizers: keeps all parameters in one buffer, so that one launch updates them all.
 #pragma once
 #include <utility>
 
@@ -7,25 +7,25 @@
 
 namespace motiongan {
 
-/// Owns the parameters' storage: they become pieces of one buffer.
+/// Moves the parameters into one buffer, of which they become views.
 class Optimizer {
  public:
   virtual ~Optimizer() = default;
   Optimizer(const Optimizer&) = delete;
   Optimizer& operator=(const Optimizer&) = delete;
 
-  /// As it is called in checkpoints and errors.
+  /// Its name in checkpoints and error messages.
   virtual const char* name() const = 0;
-  /// What it remembers from step to step beside their number, for checkpoints: names and device tensors of
-  /// all parameters one after the other.
+  /// Optimizer state for checkpoints, besides steps(): named device tensors, [n] each, over all parameters
+  /// concatenated.
   virtual std::vector<std::pair<std::string, Tensor>> state() const = 0;
 
   const std::vector<Var>& parameters() const { return parameters_; }
   std::size_t steps() const { return steps_; }
   void set_steps(std::size_t steps) { steps_ = steps; }
 
-  /// One update. `gradients` are those of parameters(), in order. Error, and nothing changes, where they do
-  /// not fit.
+  /// One update; `gradients` in the order of parameters(). Throws Error if their number or a shape does not
+  /// match; then no parameter has changed.
   void step(const std::vector<Var>& gradients) {
     require(gradients.size() == parameters_.size(), title_, ": ", gradients.size(), " gradients for ",
             parameters_.size(), " parameters");
@@ -41,7 +41,7 @@ class Optimizer {
   }
 
  protected:
-  /// `title` names the optimiser in errors.
+  /// `title` names the optimizer in error messages. Throws Error if there are no parameters.
   Optimizer(const char* title, const std::vector<NamedParameter>& parameters)
       : title_(title), parameters_(values_of(parameters)) {
     require(!parameters.empty(), title, ": no parameters");
@@ -58,11 +58,11 @@ class Optimizer {
     }
   }
 
-  /// Moves values() by gradients(); steps() counts this step already.
+  /// Updates values() from gradients(); steps() already counts this step.
   virtual void update() = 0;
 
-  const Tensor& values() const { return values_; }        // all parameters, [n]
-  const Tensor& gradients() const { return gradients_; }  // likewise
+  const Tensor& values() const { return values_; }        // all parameters concatenated, [n]
+  const Tensor& gradients() const { return gradients_; }  // in the same order, [n]
   const Context& context() const { return values_.context(); }
 
  private:

@@ -1,27 +1,37 @@
-// Stochastic gradient descent with a falling learning rate and a limit to the gradient's norm.
+// Stochastic gradient descent with learning rate decay and gradient norm clipping.
 #pragma once
 #include <cmath>
 
+#include "motiongan/core/fields.hpp"
 #include "motiongan/optim/optimizer.hpp"
 
 namespace motiongan {
 
-/// Defaults are those of residual seq2seq (Martinez, Black & Romero 2017; SPEC 7.7).
+/// The defaults are those of the residual seq2seq model (Martinez, Black & Romero 2017).
 struct SgdOptions {
   double learning_rate = 0.005;
-  double decay = 0.95;               ///< the learning rate is multiplied by this ...
-  std::size_t decay_every = 10'000;  ///< ... every so many steps; 0: never
-  double clip_norm = 5;              ///< the longest gradient, over all parameters together; 0: no limit
+  double decay = 0.95;               ///< factor of the learning rate ...
+  std::size_t decay_every = 10'000;  ///< ... applied after every decay_every steps; 0: never
+  double clip_norm = 5;              ///< maximum gradient norm over all parameters together; 0: no limit
+
+  void list_fields(FieldList& list) {
+    list.add(learning_rate, {.key = "sgd_learning_rate", .help = "step size", .range = Range::above(0)});
+    list.add(decay, {.key = "decay", .help = "factor of the learning rate at each decay", .range = Range::above(0)});
+    list.add(decay_every, {.key = "decay_every", .help = "steps between two decays; 0: never"});
+    list.add(clip_norm, {.key = "clip_norm",
+                         .help = "largest norm of the gradient; 0: no limit",
+                         .range = Range::at_least(0)});
+  }
 };
 
-/// parameter -= rate * gradient. The gradient's norm stays on the device: nothing is read back.
+/// parameter -= rate * clipped gradient. The gradient's norm stays on the device: nothing is read back.
 class Sgd : public Optimizer {
  public:
   explicit Sgd(const std::vector<NamedParameter>& parameters, SgdOptions options = {})
       : Optimizer("Sgd", parameters), options_(options) {
     require(options.learning_rate > 0 && options.decay > 0 && options.clip_norm >= 0, "Sgd: learning rate ",
-            options.learning_rate, ", decay ", options.decay, ", longest gradient ", options.clip_norm,
-            "; the first two must be above 0, the last not below");
+            options.learning_rate, ", decay ", options.decay, ", clip_norm ", options.clip_norm,
+            "; the first two must be above 0, the last at least 0");
     const std::size_t n = values().size();
     chunks_ = Tensor(context(), {(n + chunk - 1) / chunk});
   }
@@ -30,7 +40,7 @@ class Sgd : public Optimizer {
   const char* name() const override { return "sgd"; }
   std::vector<std::pair<std::string, Tensor>> state() const override { return {}; }
 
-  /// The learning rate of the step after `done` steps.
+  /// The learning rate of the next step after `done` steps.
   double rate(std::size_t done) const {
     if (options_.decay_every == 0) return options_.learning_rate;
     const std::size_t falls = done / options_.decay_every;
@@ -38,7 +48,7 @@ class Sgd : public Optimizer {
   }
 
  private:
-  static constexpr std::size_t chunk = 4096;  // numbers that one work-item sums
+  static constexpr std::size_t chunk = 4096;  // elements summed by one work-item
 
   void update() override {
     Tensor square = chunks_;

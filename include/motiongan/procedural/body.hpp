@@ -1,6 +1,5 @@
-// From what a mover thinks of (where the pelvis goes, where the feet stand, how the trunk bends, what the
-// arms do) to the rotations of all joints. Legs are solved by inverse kinematics, so planted feet stay where
-// they are.
+// Body targets (path of the pelvis, placement of the feet, angles of trunk and arms) converted to joint
+// rotations. Legs are solved by inverse kinematics, so planted feet stay where they are.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -14,11 +13,11 @@ namespace motiongan::motion::procedural {
 
 /// Angles in degrees, lengths in centimetres. Left is index 0 and +x, right is index 1 and -x.
 struct FootTarget {
-  double x = 0, z = 0;   ///< the point of the ground under the ankle of the flat foot
+  double x = 0, z = 0;   ///< the ground below the ankle of the flat foot
   double lift = 0;       ///< of the whole foot
   double yaw = 0;        ///< 0 points to +z, positive to the left
-  double heel_rise = 0;  ///< turn about the ball
-  double toe_rise = 0;   ///< turn about the heel
+  double heel_rise = 0;  ///< rotation about the ball
+  double toe_rise = 0;   ///< rotation about the heel
   double toe_bend = 0;   ///< at the toe joint; equal to heel_rise while the toes stand on the ground
 };
 
@@ -28,14 +27,14 @@ struct ArmTarget {
   double twist = 0;      ///< external rotation of the upper arm
   double elbow = 0;
   double wrist_side = 0, wrist_flexion = 0;
-  bool reach = false;  ///< put the wrist at `wrist` with the hand along `point` and forget the angles above
+  bool reach = false;  ///< put the wrist at `wrist` with the hand along `point`, ignoring the angles above
   Vec3 wrist{};        ///< in the frame of the chest (Spine2)
   Vec3 point{};
 };
 
 struct BodyTarget {
   double x = 0, z = 0;
-  double height = 96.5;                       ///< of the root; lowered where a leg would not reach its foot
+  double height = 96.5;                       ///< of the root; lowered if a leg would not reach its foot
   double yaw = 0, pitch = 0, roll = 0;        ///< of the pelvis; to the left, forward, to the right
   double bend = 0, side_bend = 0, twist = 0;  ///< of the spine over the pelvis; forward, right, left
   double nod = 0, head_tilt = 0, head_turn = 0;  ///< of the head over the chest; down, right, left
@@ -43,8 +42,8 @@ struct BodyTarget {
   std::array<ArmTarget, 2> arms{};
 };
 
-/// A leg is never straighter than this share of its length: knees of real people are not either, and the
-/// knee's angle changes infinitely fast at the end.
+/// Longest distance from hip to ankle. Real knees are never quite straight either, and the derivative of the
+/// knee angle is infinite at full extension.
 inline constexpr double leg_reach = 0.992 * (thigh_length + shin_length);
 
 inline Quat turn_x(double angle) { return axis_rotation(0, radians(angle)); }
@@ -53,15 +52,15 @@ inline Quat turn_z(double angle) { return axis_rotation(2, radians(angle)); }
 
 inline Vec3 unit(const Vec3& v) { return scale(v, 1 / length(v)); }
 
-/// Upper bone's rotation and the bend of the middle joint about its hinge, radians.
+/// Rotation of the upper bone, and bend of the middle joint about its hinge in radians.
 struct TwoBones {
   Quat upper;
   double bend = 0;
 };
 
-/// Solves a limb of lengths a and b for its end at `target`, seen from its root. At rest it lies along
-/// `along` and bends about `hinge` (perpendicular to it); `hint` is where the hinge should point, as far as
-/// it can.
+/// Two-bone inverse kinematics: puts the end of a limb of lengths a and b at `target`, relative to its root.
+/// At rest the limb lies along `along` and bends about `hinge` (perpendicular to it); the hinge points
+/// towards `hint` as far as it can.
 inline TwoBones two_bones(double a, double b, const Vec3& target, const Vec3& along, const Vec3& hinge,
                           const Vec3& hint) {
   const double full = a + b, d = std::clamp(length(target), 0.25 * full, 0.9995 * full);
@@ -79,13 +78,13 @@ inline TwoBones two_bones(double a, double b, const Vec3& target, const Vec3& al
   return {quat_from_matrix(m), pi - at_middle};
 }
 
-/// The shortest rotation from the direction of one unit vector to that of another.
+/// The shortest rotation from one unit vector to another.
 inline Quat shortest_arc(const Vec3& from, const Vec3& to) {
   const Vec3 c = cross(from, to);
   return normalize({1 + dot(from, to), c[0], c[1], c[2]});
 }
 
-/// Where the ankle is when the foot stands, rolls or swings as asked.
+/// Position of the ankle for a foot target.
 inline Vec3 ankle_position(const FootTarget& f) {
   const auto rolled = [](const Vec3& pivot, double angle) {
     return add(pivot, rotate(turn_x(angle), scale(pivot, -1)));
@@ -101,7 +100,7 @@ inline void pose_leg(const BodyTarget& body, std::size_t side, const Vec3& root,
   const double sign = side == 0 ? 1 : -1;
   const Vec3 hip = add(root, rotate(pelvis, {sign * hip_half_width, -hip_drop, 0}));
   const Vec3 to_ankle = rotate(inverse(pelvis), subtract(ankle_position(f), hip));
-  // The knee points between where the pelvis and where the foot points.
+  // The knee points between the directions of the pelvis and of the foot.
   const double out = radians(0.6 * (f.yaw - body.yaw));
   const TwoBones leg = two_bones(thigh_length, shin_length, to_ankle, {0, -1, 0}, {1, 0, 0},
                                  {std::cos(out), 0, -std::sin(out)});
@@ -141,7 +140,7 @@ inline void pose_arm(const ArmTarget& a, std::size_t side, Quat* joints) {
   joints[at + 3] = wrist;
 }
 
-/// Writes one frame: `joints` [22 joints] local rotations; returns the root's position.
+/// Writes one frame of local rotations to `joints` [22 joints]; returns the root's position.
 inline Vec3 pose_body(const BodyTarget& body, Quat* joints) {
   const Quat pelvis = multiply(multiply(turn_y(body.yaw), turn_x(body.pitch)), turn_z(body.roll));
   Vec3 root{body.x, body.height, body.z};

@@ -1,4 +1,4 @@
-// What procedural motion is drawn with: repeatable random numbers and smooth curves over time.
+// Reproducible random numbers and smooth curves over time, for procedural motion.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -11,8 +11,8 @@
 
 namespace motiongan::motion::procedural {
 
-/// Random numbers that are the same with every compiler and library (std distributions are not): splitmix64
-/// started from a hash of (seed, stream).
+/// Random numbers that are identical with every compiler and library (std distributions are not): splitmix64
+/// seeded by a hash of (seed, stream).
 class Dice {
  public:
   Dice(std::uint64_t seed, std::uint64_t stream) : state_(mix(mix(seed) + golden * (stream + 1))) {}
@@ -42,7 +42,7 @@ inline double ease(double u) {
   return u * u * (3 - 2 * u);
 }
 
-/// A hump over [0, 1]: 0 with zero slope at both ends, 1 in the middle.
+/// A bump over [0, 1]: 0 with zero slope at both ends, 1 in the middle.
 inline double hump(double u) {
   u = std::clamp(u, 0.0, 1.0);
   return 16 * u * u * (1 - u) * (1 - u);
@@ -52,7 +52,7 @@ inline double wave(double turns) { return std::sin(2 * pi * turns); }
 inline double cowave(double turns) { return std::cos(2 * pi * turns); }
 inline double fraction(double u) { return u - std::floor(u); }
 
-/// A smooth lower bound of a and b: below both by at most softness * ln 2 where they meet.
+/// Smooth minimum of a and b: below both, by at most softness * ln 2 where they meet.
 inline double soft_min(double a, double b, double softness) {
   return std::min(a, b) - softness * std::log1p(std::exp(-std::abs(a - b) / softness));
 }
@@ -81,15 +81,15 @@ class Curve {
   std::vector<Key> keys_;
 };
 
-/// Repetitions of a gesture: which one, and how far it has come.
+/// A repetition of a gesture: which one, and how far it has progressed.
 struct Beat {
   double phase = 0;     ///< in [0, 1)
-  double strength = 1;  ///< differs a little from one repetition to the next
+  double strength = 1;  ///< varies slightly between repetitions
   std::int64_t count = 0;
 };
 
-/// The repetition at time t (seconds) of a gesture that takes `period` seconds. `seed` sets the strengths; a
-/// gesture scaled by them must be at rest at phase 0, or it jumps.
+/// The repetition at time t (seconds) of a gesture with the given period (seconds). `seed` determines the
+/// strengths; a gesture scaled by them must be at rest at phase 0, or it jumps.
 inline Beat beat_at(double t, double period, double start, std::uint64_t seed) {
   const double cycles = t / period + start;
   Beat beat;

@@ -1,4 +1,4 @@
-// Actions of the upper body with the feet standing: wave, punch, clap, bow, stretch, stand, throw.
+// Upper-body actions with the feet planted: wave, punch, clap, bow, stretch, stand, throw.
 #pragma once
 #include <cmath>
 #include <string>
@@ -49,7 +49,7 @@ inline Performance punch(Performer p) {
             const double s = striking == 0 ? 1 : -1;
             const double out = Curve{{0.1, 0}, {0.2, -0.12}, {0.42, 1}, {0.5, 1}, {0.82, 0}}(beat.phase) *
                                (0.9 + 0.1 * beat.strength);
-            // Left foot ahead, knees soft, trunk a little turned away: a boxer's stance.
+            // A boxer's stance: left foot in front, knees soft, trunk slightly turned away.
             b.feet[0].z = 16, b.feet[0].x += 2;
             b.feet[1].z = -16, b.feet[1].x -= 4, b.feet[1].yaw -= 20;
             b.height = 89 + 0.7 * cowave(2 * t * p.tempo);

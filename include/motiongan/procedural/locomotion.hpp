@@ -1,5 +1,5 @@
-// Actions that step: walk, run, march, turn, sidestep. A gait says when each foot stands; where it stands
-// follows from the path of the body, so that feet do not slide however fast the body goes or turns.
+// Stepping actions: walk, run, march, turn, sidestep. A gait determines when each foot stands; where it
+// stands follows from the path of the body, so feet do not slide at any speed or turn.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -10,24 +10,24 @@
 
 namespace motiongan::motion::procedural {
 
-/// A place on the path; `yaw` in degrees.
+/// A point of the path; `yaw` in degrees.
 struct Place {
   double x = 0, z = 0, yaw = 0;
 };
 
 struct Gait {
-  std::function<Place(double)> path;  ///< of the body, by seconds
+  std::function<Place(double)> path;  ///< of the body, over seconds
   double period = 1.1;                ///< of a left and a right step, seconds
-  double duty = 0.62;                 ///< share of the period that a foot stands
+  double duty = 0.62;                 ///< fraction of the period in which a foot stands
   double start = 0;                   ///< phase of the left foot at time 0
   double half_width = 8, toe_out = 7;
-  double behind = 5;  ///< how far the foot stands behind the body's place in the middle of its stance, cm
-  double lift = 5, lift_peak = 0.4;  ///< of the swinging foot, cm, and when in the swing it is highest
+  double behind = 5;  ///< distance of the foot behind the body in mid-stance, cm
+  double lift = 5, lift_peak = 0.4;  ///< of the swinging foot, cm, and phase of the swing at its peak
   double push_off = 42, swing_heel = 58,
-         strike = 18;   ///< heel rise at push-off and its most in the swing; toe rise
-  bool always = false;  ///< steps also where the path stands still
+         strike = 18;   ///< heel rise at push-off and its maximum in the swing; toe rise
+  bool always = false;  ///< step even if the path stands still
 
-  /// Phase in [0, 1) of a foot and the number of its stance.
+  /// Phase in [0, 1) of a foot, and the number of its stance.
   Beat beat(double t, std::size_t side) const {
     const double c = t / period + start + (side == 0 ? 0.0 : 0.5), whole = std::floor(c);
     return {.phase = c - whole, .strength = 1, .count = static_cast<std::int64_t>(whole)};
@@ -37,7 +37,7 @@ struct Gait {
     const Beat now = beat(t, side);
     const FootTarget here = plant(now.count, side), next = plant(now.count + 1, side);
     const double u = (now.phase - duty) / (1 - duty), moved = ease(u);
-    // A foot that is to stay where it is is not lifted.
+    // A foot that stays in place is not lifted.
     const double going = effort(here, next), came = effort(plant(now.count - 1, side), here);
     FootTarget f = here;
     f.x += (next.x - here.x) * moved;
@@ -73,7 +73,7 @@ struct Gait {
   }
 };
 
-/// How the trunk and the arms go with the steps.
+/// How the trunk and arms move with the steps.
 struct Carriage {
   double pelvis_turn = 5, pelvis_drop = 3, sway = 2.2;
   double arm_swing = 22, arm_base = 2, elbow = 22, elbow_swing = 12;
@@ -81,7 +81,7 @@ struct Carriage {
   double bounce = 0, height = 96.5;  ///< bounce: highest between two stances, cm
 };
 
-/// A body on a gait: standing posture, feet from the gait, trunk and arms swinging against each other.
+/// A body in a gait: standing posture, feet from the gait, trunk and arms swinging in opposition.
 inline BodyTarget stepping(const Performer& p, const Gait& gait, const Carriage& c, double t) {
   BodyTarget b = p.standing(t);
   const Place place = gait.path(t);
@@ -109,7 +109,7 @@ inline BodyTarget stepping(const Performer& p, const Gait& gait, const Carriage&
   return b;
 }
 
-/// A path that goes ahead at `speed` (cm/s) and turns by `turn` degrees a second.
+/// A path with forward speed `speed` (cm/s) and turning rate `turn` (degrees per second).
 inline std::function<Place(double)> arc_path(double speed, double turn) {
   return [speed, rate = radians(turn)](double t) {
     if (std::abs(rate) < 1e-9) return Place{0, speed * t, 0};

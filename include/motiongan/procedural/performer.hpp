@@ -1,4 +1,4 @@
-// Who moves: the style of one clip, and the stance that every action starts from.
+// The style of one clip, and the stance that every action starts from.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -10,26 +10,26 @@
 
 namespace motiongan::motion::procedural {
 
-/// One clip to be: the body at any time (seconds, from 0) and what can be said about it.
+/// One clip: the body at any time (seconds, from 0) and its captions.
 struct Performance {
   std::function<BodyTarget(double)> body;
   std::vector<std::string> captions;
 };
 
-/// The style of one clip. Captions call it slow, fast, small or big where it is.
+/// The style of one clip. Captions mention it if it is slow, fast, small or big.
 struct Performer {
   Dice dice;
-  std::uint64_t seed = 0;  ///< for what varies from one repetition to the next
+  std::uint64_t seed = 0;  ///< for variation between repetitions
   std::size_t side = 0;    ///< 0 left, 1 right
   double tempo = 1;        ///< 0.72 to 1.4
   double size = 1;         ///< 0.65 to 1.35
   double start = 0;        ///< phase of the action at time 0
-  double stance = 10;      ///< from the middle to either foot, cm
+  double stance = 10;      ///< from the centre line to either foot, cm
   double toe_out = 8, hang = 8, elbow = 16, stoop = 3, restless = 1;
   std::array<double, 4> drift{};  ///< phases of slow movements
 
-  /// `repetition` says how often the action came before among the clips: sides and the slow, middle and fast
-  /// thirds of the tempo take turns, so that a small set has them all.
+  /// `repetition` is the number of earlier clips of the action: sides and the slow, middle and fast thirds of
+  /// the tempo alternate, so that even a small set has them all.
   Performer(std::uint64_t set_seed, std::size_t index, std::size_t repetition)
       : dice(set_seed, index), seed(dice.next()), side(repetition % 2) {
     tempo = third(repetition / 2 + dice.pick(2), 0.72, 1.4);
@@ -48,12 +48,12 @@ struct Performer {
   const char* side_name() const { return side == 0 ? "left" : "right"; }
 
   const char* tempo_word() const { return tempo < 0.92 ? "slowly" : tempo > 1.15 ? "quickly" : ""; }
-  /// One of three words by size; middle sizes have none.
+  /// `small` or `big` by size; empty for middle sizes.
   std::string size_word(const char* small, const char* big) const {
     return size < 0.87 ? small : size > 1.13 ? big : "";
   }
 
-  /// Standing at ease, feet side by side: breathing, shifting weight a little, never quite still.
+  /// Standing at ease, feet side by side: breathing, shifting weight slightly, never quite still.
   BodyTarget standing(double t) const {
     const double breath = wave(0.27 * t + drift[0]), sway = wave(0.11 * t + drift[1]);
     const double glance = wave(0.07 * t + drift[2]), slow = wave(0.16 * t + drift[3]);
@@ -95,7 +95,7 @@ inline std::string join(const std::string& text, const std::string& word) {
   return word.empty() ? text : text + " " + word;
 }
 
-/// The captions without empty ones and repetitions, in order.
+/// The captions without empty ones and duplicates, in order.
 inline std::vector<std::string> distinct(std::vector<std::string> captions) {
   std::vector<std::string> out;
   for (std::string& c : captions)
@@ -103,7 +103,7 @@ inline std::vector<std::string> distinct(std::vector<std::string> captions) {
   return out;
 }
 
-/// A mix of two arm poses, both given by angles.
+/// Linear interpolation between two arm poses given by angles: a at w = 0, b at w = 1.
 inline ArmTarget blend(const ArmTarget& a, const ArmTarget& b, double w) {
   const auto mix = [w](double x, double y) { return x + w * (y - x); };
   return {.flexion = mix(a.flexion, b.flexion),

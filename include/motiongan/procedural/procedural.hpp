@@ -1,6 +1,5 @@
 // Built-in human motion: captioned clips computed from a few curves, so that training, the demo and the tests
-// need no download. Actions stand in procedural_locomotion.hpp, procedural_gestures.hpp and
-// procedural_stunts.hpp.
+// need no download. The actions are in locomotion.hpp, gestures.hpp and stunts.hpp.
 #pragma once
 #include <array>
 #include <cmath>
@@ -52,15 +51,16 @@ inline constexpr std::array<Action, 17> actions{{{"walk", walk},
 
 }  // namespace procedural
 
-/// Names of the built-in actions; clip number i shows action i modulo their number.
+/// Names of the built-in actions; clip i shows action i modulo their number.
 inline std::vector<std::string> procedural_actions() {
   std::vector<std::string> names;
   for (const procedural::Action& a : procedural::actions) names.emplace_back(a.name);
   return names;
 }
 
-/// Clip number `index` of a set, id "walk_000", "run_001", ... It depends on (seed, index) alone, and a
-/// longer or denser clip shows the same movement. Error for a length or rate that gives no two frames.
+/// Clip number `index` of a set, with id "walk_000", "run_001", ... It depends only on (seed, index); a
+/// longer clip or a higher rate shows the same movement. Throws Error unless length and rate give 2 to 100
+/// million frames.
 inline LabelledMotion procedural_motion(std::size_t index, const ProceduralOptions& options = {}) {
   require(std::isfinite(options.rate) && options.rate > 0 && std::isfinite(options.seconds) &&
               options.seconds * options.rate >= 1.5 && options.seconds * options.rate < 1e8,
@@ -87,7 +87,7 @@ inline LabelledMotion procedural_motion(std::size_t index, const ProceduralOptio
     for (std::size_t j = 0; j < joints; ++j) m.position(f, j) = m.skeleton.joints[j].offset;
     const procedural::BodyTarget body = performance.body(static_cast<double>(f) / options.rate);
     m.position(f, 0) = procedural::pose_body(body, &m.rotation(f, 0));
-    // q and -q are the same rotation: keep to the one nearer to the frame before.
+    // q and -q are the same rotation: take the one nearer to the previous frame.
     for (std::size_t j = 0; f > 0 && j < joints; ++j) {
       Quat& q = m.rotation(f, j);
       if (dot(q, m.rotation(f - 1, j)) < 0) q = {-q.w, -q.x, -q.y, -q.z};
@@ -96,8 +96,8 @@ inline LabelledMotion procedural_motion(std::size_t index, const ProceduralOptio
   return out;
 }
 
-/// `options.clips` clips of human motion with captions, all actions in turn, on procedural_skeleton(), in
-/// centimetres. The same seed gives the same clips (to the rounding of the platform's sine).
+/// `options.clips` captioned clips of human motion, cycling through all actions, on procedural_skeleton(), in
+/// centimetres. The same seed gives the same clips (up to rounding of the platform's sine).
 inline std::vector<LabelledMotion> procedural_motions(const ProceduralOptions& options = {}) {
   std::vector<LabelledMotion> out;
   out.reserve(options.clips);

@@ -1,5 +1,5 @@
-// The body that procedural motion moves: 22 joints, 1.74 m tall, in centimetres, y up, facing +z with the
-// left side at +x, in a T-pose at rest.
+// The skeleton of procedural motion: 22 joints, 1.74 m tall, in centimetres, y up, facing +z with the left
+// side at +x, in a T-pose at rest.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace motiongan::motion {
 
 namespace procedural {
 
-/// Indices of the joints; of a pair, the left one stands first and the right one `..._stride` later.
+/// Joint indices; of a pair, the left one comes first and the right one `..._stride` later.
 inline constexpr std::size_t hips = 0, up_leg = 1, lower_leg = 2, foot = 3, toe = 4, leg_stride = 4;
 inline constexpr std::size_t spine = 9, neck = 12, head = 13, shoulder = 14, arm = 15, fore_arm = 16,
                              hand = 17;
@@ -21,7 +21,7 @@ inline constexpr std::size_t arm_stride = 4;
 /// Lengths in centimetres.
 inline constexpr double thigh_length = 43, shin_length = 41.5, ankle_height = 8, hip_drop = 5;
 inline constexpr double hip_half_width = 9.5, upper_arm_length = 28, fore_arm_length = 25;
-/// The ball of the foot (the toe joint) and the heel, seen from the ankle: forward and down.
+/// The ball of the foot (the toe joint) and the heel, relative to the ankle.
 inline constexpr Vec3 ball_offset{0, -6.5, 13}, heel_offset{0, -ankle_height, -5};
 inline constexpr Vec3 toe_tip_offset{0, -1.5, 7};
 
@@ -67,8 +67,8 @@ inline Skeleton procedural_skeleton() {
   return s;
 }
 
-/// Where a foot of the procedural skeleton can touch the ground: heel, ball and toe tip of the left foot,
-/// then of the right one, in the world's frame, [6].
+/// The points of the feet that can touch the ground: heel, ball and toe tip of the left foot, then of the
+/// right one, in world coordinates, [6].
 inline std::array<Vec3, 6> foot_contacts(const GlobalPose& global, std::size_t frame, std::size_t joints) {
   using namespace procedural;
   std::array<Vec3, 6> out{};

@@ -1,4 +1,4 @@
-// Actions in place that need the legs: jump, jumping jack, squat, kick, sit.
+// Standing actions that use the legs: jump, jumping jack, squat, kick, sit.
 #pragma once
 #include <cmath>
 #include <string>
@@ -14,10 +14,10 @@ inline Performance jump(Performer p) {
   const double period = crouch + push + flight + landing + rest;
   const double distance = forward ? 75 * p.size : 0, deep = 20 + 8 * p.size;
   const double take_off = crouch + push, touch = take_off + flight, speed = 981.0 * flight / 2;
-  // The legs straighten a little after take-off and bend before touch-down: feet gain speed more slowly than
-  // the body, and would hold it back if they were stretched.
+  // The legs extend slightly after take-off and bend before touch-down: the feet accelerate more slowly than
+  // the body and would hold it back if the legs were straight.
   const double up = 1.5 - 2.5 * p.size, down = -1 - 3 * p.size, drift = (down - up) / flight;
-  // Height over standing; the slopes at take-off and touch-down are those of free flight.
+  // Height above standing; the slopes at take-off and touch-down are those of free flight.
   const Curve height{{0.1, 0},
                      {crouch, -deep},
                      {take_off, up, speed + drift},
@@ -80,7 +80,7 @@ inline Performance jumping_jack(Performer p) {
             const double u = fraction(t / period + p.start);
             const double open = Curve{{0.11, 0}, {0.42, 1}, {0.59, 1}, {0.9, 0}}(u);
             const double hop = hump((u - 0.1) / 0.32) + hump((u - 0.58) / 0.32);
-            const double dip = cowave(2 * u) * 0.5 + 0.5;  // knees give at u = 0 and 1/2
+            const double dip = cowave(2 * u) * 0.5 + 0.5;  // knees bend at u = 0 and 1/2
             b.height = 95 - 7 * dip + 9 * p.size * hop;
             for (std::size_t i = 0; i < 2; ++i) {
               const double s = i == 0 ? 1 : -1;

@@ -1,5 +1,4 @@
-// Whole clips of an attention model: by a schedule of classes, or made again from a clip's first second (SPEC
-// 5).
+// Whole clips from an attention model: by a schedule of classes, or as synthetic counterparts of real clips.
 #pragma once
 #include "motiongan/sample/action_schedule.hpp"
 #include "motiongan/sample/action_stream.hpp"
@@ -7,19 +6,20 @@
 namespace motiongan {
 
 struct ActionGenerateOptions {
-  bool with_prior = true;          ///< whether the clips begin with the T frames that were given
-  std::uint64_t seed = 1;          ///< of the noise, where the model has some
-  std::uint32_t first_sample = 0;  ///< number of the first clip's noise; the others count on
+  bool with_prior = true;          ///< whether the clips begin with the T frames of the prior
+  std::uint64_t seed = 1;          ///< seed of the noise, if the model takes noise
+  std::uint32_t first_sample = 0;  ///< noise sample of the first clip; later clips count up from it
 };
 
-/// One clip for each prior, all of the same schedule. The model makes T frames at once; where a piece ends
-/// inside them, the frames of the piece are kept and the next piece goes on from the last T frames kept, so
-/// that a class changes exactly where the schedule says. Ids are those of the priors.
+/// Generates one clip for each prior, all with the same schedule; their ids are those of the priors. The
+/// model makes T frames at a time. Where a piece of the schedule ends within them, the remaining frames are
+/// discarded and the next piece continues from the last T frames kept, so that classes change exactly where
+/// the schedule says. Throws Error if the schedule has no frames or a prior does not fit the model.
 inline std::vector<motion::PositionClip> generate(const ActionGan& model,
                                                   std::span<const ActionPrior> priors,
                                                   const ActionSchedule& schedule,
                                                   const ActionGenerateOptions& options = {}) {
-  require(frames_of(schedule) > 0, "a schedule without frames was asked for");
+  require(frames_of(schedule) > 0, "the schedule has no frames, expected at least 1");
   ActionStream stream(model);
   std::vector<ActionCharacterOptions> characters;
   std::vector<motion::PositionClip> clips;
@@ -50,22 +50,22 @@ inline std::vector<motion::PositionClip> generate(const ActionGan& model,
   return clips;
 }
 
-/// What becomes of a clip when all after its first T frames is made by the model.
+/// A clip of which all but the first T frames are generated.
 struct SyntheticClip {
-  motion::PositionClip clip;  ///< as long as the real one, its first T frames those of the real one
-  std::size_t label = 0;
+  motion::PositionClip clip;  ///< as long as the real clip, with the real first T frames
+  std::size_t label = 0;      ///< index of its class
 };
 
-/// A synthetic clip for each of `clips` of `data`: same prior, same class, same length (SPEC 5: synthetic
-/// data). Without root channels in the model's format the body goes where the real one went. Error where the
-/// model lacks a class of the data, or has another skeleton.
+/// Generates a synthetic clip for each of `clips` of `data`, with the same prior, class and length. If the
+/// model's format has no root channels, the root follows the real clip. Throws Error if the model lacks a
+/// class of the data or has another skeleton.
 inline std::vector<SyntheticClip> synthesise(const ActionGan& model, const motion::ActionDataset& data,
                                              std::span<const motion::ActionClip> clips,
                                              std::uint64_t seed = 1, std::uint32_t first_sample = 0) {
   const motion::PositionFormat& format = model.format();
   const std::size_t frames = format.frames;
   ActionStream stream(model);
-  std::map<ActionStream::Id, std::size_t> numbers;  // of those still under way
+  std::map<ActionStream::Id, std::size_t> numbers;  // clip number of the characters still in progress
   std::vector<SyntheticClip> out;
   std::vector<std::size_t> lengths;
   std::vector<std::vector<motion::RootTrack>> places;

@@ -1,4 +1,4 @@
-// A second of motion that an attention model goes on from, taken out of a clip (SPEC 5).
+// The prior of an attention model, the given second of motion, taken from a clip.
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -13,17 +13,18 @@
 
 namespace motiongan {
 
-/// What a character has done in the T frames before it moves on by itself, at the format's rate.
+/// The T frames that precede generated motion, at the format's rate.
 struct ActionPrior {
-  std::string id;                         ///< of the clip
+  std::string id;                         ///< id of the clip
   std::size_t first_frame = 0;            ///< in the clip, at the format's rate
   motion::Skeleton skeleton;              ///< with the clip's own bone lengths
   std::vector<float> poses;               ///< [T, dof], normalised
-  std::vector<motion::Vec3> positions;    ///< [T, joints], in the world
-  std::vector<motion::RootTrack> places;  ///< [T], where the root stood
+  std::vector<motion::Vec3> positions;    ///< [T, joints], world space, in the clip's unit
+  std::vector<motion::RootTrack> places;  ///< [T], position and heading of the root
 };
 
-/// The clip of a BVH file's motion as the format has it: at its rate, from its root joint on.
+/// A BVH motion as a position clip at the format's rate, from the format's root joint down. Throws Error if
+/// the skeleton has no joint of that name.
 inline motion::PositionClip clip_for(const motion::Motion& motion, const motion::PositionFormat& format,
                                      const std::string& id) {
   const int root = motion.skeleton.find(format.skeleton().joints.front().name);
@@ -32,8 +33,8 @@ inline motion::PositionClip clip_for(const motion::Motion& motion, const motion:
   return motion::positions_of(motion, id, format.rate, root);
 }
 
-/// The T frames of `clip` from `first_frame` on, counted at the format's rate; a clip of another rate is
-/// brought to that. Error for another skeleton, naming the joints, and where the clip ends too soon.
+/// The T frames of `clip` from `first_frame`, counted at the format's rate; a clip of another rate is
+/// resampled. Throws Error for another skeleton, naming the joints, and if the clip is too short.
 inline ActionPrior prior_from(const motion::PositionClip& clip, const motion::PositionFormat& format,
                               std::size_t first_frame = 0) {
   format.require_skeleton(clip.skeleton, "the prior " + clip.id);
@@ -49,7 +50,7 @@ inline ActionPrior prior_from(const motion::PositionClip& clip, const motion::Po
           seconds(left), ") from frame ", first_frame, " (", seconds(first_frame), ") on, at ", format.rate,
           " per second; ", needed, " frames (", seconds(needed),
           ") are needed: give a clip of at least that, ", "or start earlier");
-  // Steps count from the frame before, so the poses are those of the clip, not of a clip that begins here.
+  // Root steps are relative to the previous frame, so encode from the clip's start, not from first_frame.
   const std::span<const motion::Vec3> before(at_rate.positions.data(), end * joints);
   ActionPrior out{clip.id, first_frame, clip.skeleton, {}, {}, {}};
   std::vector<motion::RootTrack> places;
@@ -68,7 +69,7 @@ inline ActionPrior prior_from(const motion::PositionClip& clip, const motion::Po
   return out;
 }
 
-/// The whole clip of a data set, as positions in the world.
+/// A whole clip of a data set, as world-space positions.
 inline motion::PositionClip clip_of(const motion::ActionDataset& data, const motion::ActionClip& clip) {
   return {clip.id, clip.skeleton, data.format.rate, clip.frames,
           data.format.restore(clip.poses, clip.places)};

@@ -1,4 +1,4 @@
-// What a character does one after another, and for how long: "walk:3s,run:5s".
+// Schedules: the classes a character goes through, and for how long, such as "walk:3s,run:5s".
 #pragma once
 #include <charconv>
 #include <cmath>
@@ -12,16 +12,16 @@
 
 namespace motiongan {
 
-/// So many frames of one class.
+/// A number of frames of one class.
 struct ActionPiece {
-  std::size_t label = 0;  ///< number of the class
+  std::size_t label = 0;  ///< index of the class
   std::size_t frames = 0;
   friend bool operator==(const ActionPiece&, const ActionPiece&) = default;
 };
 
 using ActionSchedule = std::vector<ActionPiece>;
 
-/// Frames of all pieces.
+/// Total number of frames.
 inline std::size_t frames_of(const ActionSchedule& schedule) {
   std::size_t n = 0;
   for (const ActionPiece& piece : schedule) n += piece.frames;
@@ -30,7 +30,7 @@ inline std::size_t frames_of(const ActionSchedule& schedule) {
 
 namespace detail {
 
-/// Seconds in frames, to the nearest; Error for fewer than one and more than 2^31.
+/// Seconds as frames, rounded to the nearest. Throws Error if the result is below 1 or not below 2^31.
 inline std::size_t frames_in(double seconds, double rate, std::string_view what) {
   const double frames = std::round(seconds * rate);
   require(std::isfinite(frames) && frames >= 1 && frames < 2147483648.0, what, ": ", seconds, " seconds are ",
@@ -53,14 +53,15 @@ inline std::size_t piece_frames(std::string_view text, double rate, const std::s
 
 }  // namespace detail
 
-/// Reads pieces with commas between them, each a class and its length in seconds or frames: "walk:3s,run:90".
-/// A piece without a length lasts as long as is left of `seconds` (0: not given), so that "walk" alone lasts
-/// all of them; only the last one may have none. Lengths are rounded to frames at the format's rate. Errors
-/// name the piece; an unknown class is PositionFormat::class_index()'s error.
+/// Parses comma-separated pieces, each a class and its length in seconds or frames: "walk:3s,run:90". The
+/// last piece may omit its length; it then takes what is left of `seconds`, the total length (0: not given),
+/// so that "walk" alone takes all of it. Lengths are rounded to frames at the format's rate. Throws Error,
+/// naming the piece, for a bad piece, for an unknown class (as PositionFormat::class_index()), and if the
+/// pieces do not add up to `seconds`.
 inline ActionSchedule parse_action_schedule(std::string_view text, const motion::PositionFormat& format,
                                             double seconds = 0) {
   ActionSchedule out;
-  require(!text.empty(), "the schedule is empty, expected such as walk:3s,run:5s");
+  require(!text.empty(), "the schedule is empty, expected for example walk:3s,run:5s");
   const std::string_view whole = text;
   for (bool more = true; more;) {
     const std::size_t comma = text.find(',');
@@ -79,18 +80,19 @@ inline ActionSchedule parse_action_schedule(std::string_view text, const motion:
       continue;
     }
     require(!more, what, " has no length, expected one such as ", piece,
-            ":3s; only the last piece may go without");
-    require(seconds > 0, what, " has no length, expected one such as ", piece, ":3s, or seconds in all");
+            ":3s; only the last piece may omit it");
+    require(seconds > 0, what, " has no length, expected one such as ", piece,
+            ":3s, or a total number of seconds");
     const std::size_t total = detail::frames_in(seconds, format.rate, what), used = frames_of(out);
-    require(used < total, what, ": nothing is left for it of ", seconds, " seconds (", total,
-            " frames); the pieces ", "before it take ", used, " frames");
+    require(used < total, what, ": nothing of the ", seconds, " seconds (", total,
+            " frames) is left for it; the pieces ", "before it take ", used, " frames");
     out.push_back({label, total - used});
     return out;
   }
   require(seconds <= 0 || frames_of(out) == detail::frames_in(seconds, format.rate, "the schedule"),
           "the schedule '", whole, "' lasts ", static_cast<double>(frames_of(out)) / format.rate,
           " seconds, but ", seconds,
-          " were asked for: leave the seconds out, or the length of the last piece");
+          " were requested: omit the total, or the length of the last piece");
   return out;
 }
 

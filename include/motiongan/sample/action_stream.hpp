@@ -1,4 +1,4 @@
-// Characters whose class may change, second after second (SPEC 5: generation).
+// Streaming generation with an attention model: characters whose class may change, one second at a time.
 #pragma once
 #include <algorithm>
 #include <map>
@@ -14,34 +14,34 @@
 namespace motiongan {
 
 struct ActionCharacterOptions {
-  const ActionPrior* prior = nullptr;  ///< what it has done so far; only needed until it is added
-  std::size_t label = 0;               ///< number of its class, see PositionFormat::class_index()
-  std::uint64_t seed = 1;              ///< of the noise, where the model has some
-  std::uint32_t sample = 0;            ///< another sample of a seed is another motion, where there is noise
+  const ActionPrior* prior = nullptr;  ///< its first T frames; only read by add()
+  std::size_t label = 0;               ///< index of its class, see PositionFormat::class_index()
+  std::uint64_t seed = 1;              ///< seed of the noise, if the model takes noise
+  std::uint32_t sample = 0;            ///< selects the noise within a seed
 };
 
-/// Any number of characters that come and go, each with its own prior, class, noise and place in the world.
-/// The model makes T frames (a second) at once from the T before. A character's motion does not depend on
-/// which others there are, bit for bit on the native engine of gemm(); where steps are cut shorter than T it
-/// does depend on where, for the model then goes on from what was kept.
+/// Any number of characters, added and removed at any time, each with its own prior, class, noise and place
+/// in the world. The model makes T frames (one second) from the previous T. A character's motion does not
+/// depend on the others in the stream, bit for bit with gemm()'s native engine. It does depend on where steps
+/// are cut shorter than T, because the model then continues from the frames kept.
 ///
-/// With root channels in the format, steps and turns are added up from where the prior ended, so that
-/// characters travel; without, they stand where it ended.
+/// If the format has root channels, root steps and turns are integrated from the end of the prior, so that
+/// characters travel; otherwise they stay where the prior ended.
 ///
 ///     ActionStream stream(model);
 ///     const auto id = stream.add({.prior = &prior, .label = model.format().class_index("walk")});
-///     stream.step();             // a second of all
-///     draw(stream.clip(id));     // T frames of positions in the world
+///     stream.step();             // one second for all characters
+///     draw(stream.clip(id));     // T frames of world-space positions
 ///     stream.set_class(id, "run");
 class ActionStream {
  public:
   using Id = std::size_t;
 
-  /// For attention generator and LSTM baseline alike. The weights are taken as they are now; the model must
-  /// outlive the stream. Samples beyond `most_at_once` take a batch of their own.
+  /// Works with the attention generator and the LSTM baseline. The weights are read at construction; the
+  /// model must outlive the stream. At most `most_at_once` characters share a batch. Throws Error if it is 0.
   explicit ActionStream(const ActionGan& model, std::size_t most_at_once = 256)
       : model_(model), format_(model.format()), most_at_once_(most_at_once) {
-    require(most_at_once > 0, "an ActionStream of batches of 0 characters was asked for");
+    require(most_at_once > 0, "most_at_once is 0, expected at least 1");
     if (!model.is_baseline()) rollout_.emplace(model.generator());
   }
   ActionStream(const ActionStream&) = delete;
@@ -50,14 +50,14 @@ class ActionStream {
   std::size_t size() const { return characters_.size(); }
   const motion::PositionFormat& format() const { return format_; }
 
-  /// Adds a character; it moves with the next step. Error without a prior of T frames, and for an unknown
-  /// class.
+  /// Adds a character; it moves with the next step. Throws Error without a prior of T frames and for an
+  /// unknown class.
   Id add(const ActionCharacterOptions& options) {
     require(options.prior != nullptr, "a character needs a prior: ", format_.frames,
-            " frames of motion to go on from (prior_from)");
+            " frames of motion to continue (see prior_from)");
     const ActionPrior& prior = *options.prior;
     require(prior.poses.size() == format_.frames * format_.dof() && !prior.places.empty(), "the prior ",
-            prior.id, " has ", prior.poses.size(), " numbers, expected ", format_.frames, " frames of ",
+            prior.id, " has ", prior.poses.size(), " values, expected ", format_.frames, " frames of ",
             format_.dof());
     check_class(options.label);
     characters_.emplace(next_id_, Character{.id = prior.id,
@@ -69,6 +69,7 @@ class ActionStream {
                                             .track = prior.places.back()});
     return next_id_++;
   }
+  /// Adds them all. If one throws, none is added.
   std::vector<Id> add(std::span<const ActionCharacterOptions> options) {
     std::vector<Id> ids;
     try {
@@ -80,13 +81,13 @@ class ActionStream {
     return ids;
   }
 
-  /// Takes a character out. Error where there is none of that id, as for all that takes an id.
+  /// Removes a character. Throws Error for an unknown id, as every function that takes an id.
   void remove(Id id) {
     character(id);
     characters_.erase(id);
   }
 
-  /// What it does from the next step on.
+  /// Changes the class, from the next step. Throws Error for an unknown class.
   void set_class(Id id, std::size_t label) {
     check_class(label);
     character(id).label = label;
@@ -94,15 +95,16 @@ class ActionStream {
   void set_class(Id id, std::string_view name) { character(id).label = format_.class_index(name); }
   const std::string& class_of(Id id) const { return format_.classes[character(id).label]; }
 
-  /// Where its root stands after the last step; may be changed, to put it somewhere else.
+  /// Position and heading of its root after the last step; assign to it to move the character.
   motion::RootTrack& track(Id id) { return character(id).track; }
   const motion::RootTrack& track(Id id) const { return character(id).track; }
 
-  /// Moves all characters on by a second, T frames, or by the first `frames` of it (1 .. T; 0: all).
+  /// Advances all characters by T frames (one second), or by the first `frames` of them (1 .. T; 0: all T).
+  /// Throws Error if frames is above T.
   void step(std::size_t frames = 0) {
     if (frames == 0) frames = format_.frames;
-    require(frames <= format_.frames, "a step of ", frames, " frames was asked for, expected at most ",
-            format_.frames, ": the model makes so many at once");
+    require(frames <= format_.frames, "frames is ", frames, ", expected at most ",
+            format_.frames, ", the number the model makes per step");
     std::vector<Character*> batch;
     for (auto& entry : characters_) {
       batch.push_back(&entry.second);
@@ -111,15 +113,16 @@ class ActionStream {
     if (!batch.empty()) move_on(batch, frames);
   }
 
-  /// The frames of the last step as the model made them, [frames, dof], normalised; valid until the next
-  /// step. Error for a character that was added after it.
+  /// The frames of the last step as normalised poses [frames, dof]; valid until the next step. Throws Error
+  /// for a character added since.
   std::span<const float> poses(Id id) const {
     const Character& c = character(id);
     require(c.made > 0, "character ", id, " has not moved since it was added; call step()");
     return std::span(c.window).last(c.made * format_.dof());
   }
 
-  /// The same in the world, with the bones of its prior.
+  /// The same as world-space positions, with the skeleton of its prior. Throws Error for a character added
+  /// since.
   motion::PositionClip clip(Id id) const {
     const Character& c = character(id);
     motion::RootTrack track = c.before;
@@ -139,7 +142,7 @@ class ActionStream {
   };
 
   void check_class(std::size_t label) const {
-    require(label < format_.classes.size(), "class number ", label, " was asked for, the model has ",
+    require(label < format_.classes.size(), "class number ", label, " is out of range, the model has ",
             format_.classes.size(), " classes");
   }
   const Character& character(Id id) const {
@@ -149,7 +152,7 @@ class ActionStream {
   }
   Character& character(Id id) { return const_cast<Character&>(std::as_const(*this).character(id)); }
 
-  /// The T frames [T, B, dof] after the prior [T, B, dof].
+  /// The future [T, B, dof] of the prior [T, B, dof].
   Tensor make(const Tensor& prior, const Tensor& classes, const Tensor& noise) {
     if (rollout_) return rollout_->step(prior, classes, noise);
     const NoGrad values_only;

@@ -1,4 +1,4 @@
-// Characters that move on frame by frame, as a game loop asks for them (SPEC 2: completion and streaming).
+// Streaming generation with DVGAN's RNN generator: characters advanced frame by frame, as in a game loop.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -18,38 +18,38 @@
 
 namespace motiongan {
 
-/// Names a character for as long as it is in its stream.
+/// Identifies a character while it is in its stream.
 using CharacterId = StreamId;
 
 struct CharacterOptions {
-  std::string text;
+  std::string text;  ///< its description
   std::uint64_t seed = 1;
-  std::uint32_t sample = 0;  ///< another sample of a seed is another motion
-  /// What it has done so far, at any rate: it goes on from the last frame. Only needed until it is added.
+  std::uint32_t sample = 0;  ///< selects the noise within a seed
+  /// Motion to continue from its last frame, at any frame rate. Only read by add().
   const motion::Motion* prior = nullptr;
-  /// Without a prior: where it begins. Poses with steps and turns (RootRotation::velocity) put the first
-  /// frame there; other forms put the origin there that their positions count from, which the first frame is
-  /// near to. The yaw is left out of RootRotation::expmap.
+  /// Start position and heading of a character without a prior. With RootRotation::velocity the first frame
+  /// is placed there; with the other forms, the origin of their root positions, which is close to the first
+  /// frame. RootRotation::expmap ignores the yaw.
   motion::RootTrack at = {};
 };
 
-/// Any number of characters, each with its own text, noise and place in the world, that all move on together.
-/// A character's motion does not depend on which others there are, nor on how many frames a step has: it is
-/// Dvgan::generate's for the same text, seed and sample. step() allocates nothing on the device once it has
-/// made as many frames for as many characters.
+/// Any number of characters, each with its own text, noise and place in the world, advanced together. A
+/// character's motion does not depend on the others in the stream or on the number of frames per step: it is
+/// that of Dvgan::generate for the same text, seed and sample. step() allocates nothing on the device once it
+/// has made that number of frames for that number of characters.
 ///
-/// They may go on for as long as they like. With RootRotation::velocity nothing grows; with the other forms,
-/// place (and yaw) are counted from the beginning, and leave the range of the training windows when a
+/// Characters can run indefinitely. With RootRotation::velocity no value grows over time; with the other
+/// forms, position (and yaw) are relative to the start and leave the range of the training windows when a
 /// character walks far.
 ///
 ///     MotionStream stream(model);
 ///     const CharacterId id = stream.add({.text = "walk"});
-///     stream.step();                              // one frame of all
-///     draw(stream.motion(id));                    // a motion of one frame, placed in the world
+///     stream.step();                              // one frame for all characters
+///     draw(stream.motion(id));                    // a motion of one frame, in world space
 ///     stream.set_text(id, "run");
 class MotionStream {
  public:
-  /// Error for a model with a CNN generator. The weights are taken as they are now.
+  /// Throws Error for a model with a CNN generator. The weights are read at construction.
   explicit MotionStream(const Dvgan& model) : format_(model.format()), stream_(model.rnn()) {
     const motion::PoseLayout& layout = format_.layout;
     if (!layout.has_steps()) return;
@@ -64,19 +64,19 @@ class MotionStream {
   std::size_t size() const { return stream_.size(); }
   double rate() const { return format_.rate; }  ///< frames per second
   const motion::MotionFormat& format() const { return format_; }
-  /// The model's. The motion of a character that came with a prior has the prior's bone lengths.
+  /// The model's skeleton. A character with a prior has the prior's bone lengths instead.
   const motion::Skeleton& skeleton() const { return format_.skeleton(); }
 
-  /// Adds a character; it moves with the next step. Error for a text without a word and for a prior with
-  /// other joints, which are named, or without frames. Words that the training captions did not have count as
-  /// unknown.
+  /// Adds a character; it moves with the next step. Throws Error for a text without words and for a prior
+  /// that has no frames or another skeleton, naming the joints. Words not in the training captions are
+  /// treated as unknown.
   CharacterId add(const CharacterOptions& options) { return add(std::vector{options}).front(); }
 
-  /// Adds them all together, which costs little more than one. After an Error none was added.
+  /// Adds them all, which costs little more than adding one. If one throws, none is added.
   std::vector<CharacterId> add(const std::vector<CharacterOptions>& options) {
     std::vector<Newcomer> newcomers;
     for (const CharacterOptions& o : options) {
-      // Those that go on from one motion share what was made of it.
+      // Characters with the same prior share its encoding.
       const auto same = std::find_if(newcomers.begin(), newcomers.end(), [&](const Newcomer& n) {
         return o.prior != nullptr && n.prior == o.prior;
       });
@@ -84,7 +84,7 @@ class MotionStream {
       n.start = {format_.vocabulary.encode(o.text), o.seed, o.sample};
       newcomers.push_back(std::move(n));
     }
-    std::map<std::size_t, std::vector<std::size_t>> by_length;  // of the priors; the stream takes equal ones
+    std::map<std::size_t, std::vector<std::size_t>> by_length;  // the stream adds priors of equal length
     for (std::size_t i = 0; i < newcomers.size(); ++i)
       by_length[newcomers[i].poses->size() / format_.dof()].push_back(i);
     std::vector<CharacterId> ids(options.size());
@@ -105,20 +105,21 @@ class MotionStream {
     return ids;
   }
 
-  /// Takes a character out. Error where there is none of that id, as for all that takes an id.
+  /// Removes a character. Throws Error for an unknown id, as every function that takes an id.
   void remove(CharacterId id) {
     stream_.remove(id);
     characters_.erase(id);
   }
 
-  /// What it does from now on. One frame is always made ahead, so the next one still follows the old text.
+  /// Changes the text. One frame is always computed ahead, so the next frame still follows the old text.
+  /// Throws Error for a text without words.
   void set_text(CharacterId id, const std::string& text) {
     stream_.set_sentence(id, format_.vocabulary.encode(text));
   }
 
-  /// Moves all characters on by so many frames. Error for 0 frames.
+  /// Advances all characters by a number of frames. Throws Error for 0 frames.
   void step(std::size_t frames = 1) {
-    require(frames > 0, "a step of 0 frames was asked for, expected at least 1");
+    require(frames > 0, "frames is 0, expected at least 1");
     const std::span<const float> made = stream_.step(frames);  // [frames, size, dof]
     const std::size_t dof = format_.dof(), rows = size();
     poses_.resize(made.size());
@@ -135,8 +136,7 @@ class MotionStream {
     }
   }
 
-  /// The frames of the last step, placed in the world, at rate(). Error for a character that was added after
-  /// it.
+  /// The frames of the last step in world space, at rate(). Throws Error for a character added since.
   motion::Motion motion(CharacterId id) const {
     const Character& c = character(id);
     motion::RootTrack track = c.track;
@@ -154,7 +154,7 @@ class MotionStream {
     return made;
   }
 
-  /// The same as the model made it, [frames of the last step, dof], normalised; valid until the next step.
+  /// The same as normalised poses, [frames of the last step, dof]; valid until the next step.
   std::span<const float> poses(CharacterId id) const {
     const Character& c = character(id);
     require(c.row.has_value(), "character ", id, " has not moved since it was added; call step()");
@@ -163,7 +163,7 @@ class MotionStream {
   }
 
  private:
-  /// Where the origin of a motion's numbers lies in the world.
+  /// Places a motion, whose root positions are relative to an origin, in the world.
   struct Origin {
     double turn = 0, from_x = 0, from_z = 0, x = 0, z = 0;
 
@@ -176,7 +176,8 @@ class MotionStream {
     }
   };
 
-  /// The body of a prior, and where its joints were at the end: those that no pose moves stay there.
+  /// The skeleton of a prior and its joint positions in the last frame, kept by joints that poses do not
+  /// move.
   struct Body {
     motion::Skeleton skeleton;
     std::vector<motion::Vec3> positions;  // [joints]
@@ -185,7 +186,7 @@ class MotionStream {
   struct Character {
     motion::RootTrack track, next_track;  // before the frames of the last step, and after them
     Origin origin;
-    std::shared_ptr<const Body> body;  // null: the model's
+    std::shared_ptr<const Body> body;  // null: the model's skeleton
     std::optional<std::size_t> row;    // in poses_
   };
 
@@ -196,7 +197,7 @@ class MotionStream {
     StreamStart start;
   };
 
-  /// A pose's number on the way to motion: as it is kept, or the mean where it was dropped.
+  /// One value of a pose, de-normalised: read from the pose, or the mean if the dimension was dropped.
   struct Number {
     std::optional<std::size_t> kept;
     double mean = 0, std = 0;
@@ -204,7 +205,7 @@ class MotionStream {
   };
 
   const Character& character(CharacterId id) const {
-    stream_.row_of(id);  // tells of an id that is gone
+    stream_.row_of(id);  // throws for an unknown id
     return characters_.at(id);
   }
 
@@ -218,7 +219,7 @@ class MotionStream {
       if (layout.has_yaw() && !layout.has_steps()) c.origin.turn = o.at.yaw;
       return n;
     }
-    require(o.prior->frames > 0, "the prior has no frames; a motion can only go on from a frame");
+    require(o.prior->frames > 0, "the prior has no frames, expected at least 1");
     format_.require_skeleton(o.prior->skeleton, "the prior");
     motion::Motion prior = *o.prior;
     if (std::abs(prior.rate / rate() - 1) > 1e-6) prior = motion::resample_to_end(prior, rate());
@@ -226,7 +227,7 @@ class MotionStream {
     std::vector<float> poses = format_.encode_window(prior);
     for (std::size_t i = 0; i < poses.size(); ++i)
       require(std::isfinite(poses[i]), "frame ", i / format_.dof(),
-              " of the prior has a number that is not finite");
+              " of the prior has a value that is not finite");
     const auto end = static_cast<std::ptrdiff_t>(prior.positions.size());
     c.body = std::make_shared<const Body>(
         Body{prior.skeleton,
@@ -244,7 +245,7 @@ class MotionStream {
     return n;
   }
 
-  /// Adds those of `newcomers` whose priors have `frames` frames.
+  /// Adds those of `newcomers` in `members`, whose priors have `frames` frames each.
   std::vector<CharacterId> add_group(const std::vector<Newcomer>& newcomers,
                                      const std::vector<std::size_t>& members, std::size_t frames) {
     const std::size_t dof = format_.dof();
@@ -259,7 +260,7 @@ class MotionStream {
     return stream_.add(starts, priors, frames);
   }
 
-  /// A pose's number by its place in the layout.
+  /// A pose's value by its dimension in the layout.
   Number number(std::size_t dim) const {
     const motion::Normalizer& n = format_.normalizer;
     const auto found = std::lower_bound(n.kept().begin(), n.kept().end(), dim);
@@ -269,7 +270,7 @@ class MotionStream {
     return out;
   }
 
-  /// Takes the track on by one pose.
+  /// Advances the track by one pose.
   void follow(motion::RootTrack& track, const float* pose) const {
     motion::advance(track, step_x_.of(pose), step_z_.of(pose), turn_.of(pose));
   }

@@ -1,22 +1,22 @@
-// Bringing the index of a folder up to date: what is new or has changed is read, the rest is kept.
+// Updates the search index of a folder: reads new and changed files, keeps the rest.
 #pragma once
 #include "motiongan/search/index.hpp"
 #include "motiongan/formats/bvh_reader.hpp"
 
 namespace motiongan {
 
-/// An index, and what was done to have it.
+/// An index, and what was done to update it.
 struct SearchCollection {
   SearchIndex index;
-  std::filesystem::path file;         ///< where the index is kept
-  std::size_t read = 0;               ///< files that were read now
-  std::size_t kept = 0;               ///< files that the index on disk had
-  std::size_t removed = 0;            ///< files that it had and that are gone
-  bool written = false;               ///< whether the index on disk is another now
-  std::vector<std::string> warnings;  ///< what people should know, a sentence each
+  std::filesystem::path file;         ///< where the index is stored
+  std::size_t read = 0;               ///< files read now
+  std::size_t kept = 0;               ///< files taken from the stored index
+  std::size_t removed = 0;            ///< files of the stored index that no longer exist
+  bool written = false;               ///< whether the stored index was rewritten
+  std::vector<std::string> warnings;  ///< for the user, one sentence each
 };
 
-/// Where the index of a folder is kept unless somebody says otherwise: one file for each motion format.
+/// The default index file of a folder: one for each motion format.
 inline std::filesystem::path search_index_file(const std::filesystem::path& folder,
                                                const motion::MotionFormat& format) {
   const std::string key = search_key(format);
@@ -26,8 +26,8 @@ inline std::filesystem::path search_index_file(const std::filesystem::path& fold
 
 namespace search_detail {
 
-/// A clip's poses in the model's format, at its rate, and what is known of the file. Files that are no use
-/// say why in `left_out`.
+/// A clip's normalised poses [frames, dof] at the model's rate; fills in `clip`. Returns nothing for a file
+/// that cannot be used and gives the reason in `clip.left_out`.
 inline std::vector<float> encode_file(const std::filesystem::path& path, const motion::MotionFormat& format,
                                       SearchClip& clip) {
   std::vector<float> poses;
@@ -45,7 +45,7 @@ inline std::vector<float> encode_file(const std::filesystem::path& path, const m
     const motion::EncodedClip encoded =
         encode_clip(motion::to_motion(bvh), options, 0, static_cast<int>(format.layout.root()));
     const std::size_t dof = format.layout.dof();
-    std::vector<double> rows;  // every stride-th frame, as windows of a data set have them
+    std::vector<double> rows;  // every stride-th frame, as in a data set's windows
     for (std::size_t f = 0; f < encoded.frames; f += encoded.stride)
       rows.insert(rows.end(), encoded.poses.begin() + static_cast<std::ptrdiff_t>(f * dof),
                   encoded.poses.begin() + static_cast<std::ptrdiff_t>((f + 1) * dof));
@@ -64,7 +64,7 @@ inline std::vector<float> encode_file(const std::filesystem::path& path, const m
   return poses;
 }
 
-/// Whether the file begins as an index does, whatever became of the rest of it; or is empty.
+/// Whether the file begins like an index, damaged or not, or is empty: then it may be overwritten.
 inline bool looks_like_index(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   std::string head(512, '\0');
@@ -73,7 +73,8 @@ inline bool looks_like_index(const std::filesystem::path& path) {
   return head.empty() || head.find(version_key) != std::string::npos;
 }
 
-/// The index on disk where there is one to go on from; why not is added to `warnings`.
+/// The stored index, if it exists and can be used; otherwise adds the reason to `warnings`. Throws Error if
+/// `file` is something else.
 inline std::optional<SearchIndex> old_index(const std::filesystem::path& file, bool is_ours,
                                             const motion::MotionFormat& format,
                                             std::vector<std::string>& warnings) {
@@ -84,23 +85,24 @@ inline std::optional<SearchIndex> old_index(const std::filesystem::path& file, b
     std::optional<SearchIndex> index = SearchIndex::read(file, format);
     if (!index)
       warnings.push_back(
-          concat("the index ", file.string(), " was made for another model's format; making it anew"));
+          concat("the index ", file.string(), " was made for another model's format; rebuilding it"));
     return index;
   } catch (const std::exception& error) {
-    warnings.push_back(concat("the index cannot be used (", error.what(), "); making it anew"));
+    warnings.push_back(concat("the index cannot be used (", error.what(), "); rebuilding it"));
     return std::nullopt;
   }
 }
 
 }  // namespace search_detail
 
-/// The index of all BVH files in a folder and the folders in it, or of one file, for models of this format.
+/// Opens the index of all BVH files in a folder and its subfolders, or of one file, for models of this
+/// format.
 ///
-/// Kept in `file`, or where search_index_file() says. Files whose size and time are those of the index are
-/// not read again. Clips shorter than a window, files that cannot be read and those of another skeleton are
-/// left out, and remembered as such. An index that cannot be written is a warning, no error; a damaged one is
-/// made anew, with a warning. Error where no clip is left, naming the first one's reason, and where `file` is
-/// something else than an index.
+/// The index is stored in `file`, by default search_index_file(). Files whose size and modification time are
+/// unchanged are not read again. Clips shorter than a window, unreadable files and files of another skeleton
+/// are left out, and recorded as such. An index that cannot be written is a warning, not an error; a damaged
+/// one is rebuilt with a warning. Throws Error if no clip is left, giving the reason for the first one, and
+/// if `file` exists and is not an index.
 inline SearchCollection open_search_collection(const std::filesystem::path& folder,
                                                const motion::MotionFormat& format,
                                                const std::filesystem::path& file = {}) {
@@ -158,8 +160,8 @@ inline SearchCollection open_search_collection(const std::filesystem::path& fold
       out.written = true;
     } catch (const std::exception& error) {
       out.warnings.push_back(
-          concat("the index could not be kept, and the next search will read all files again (", error.what(),
-                 "); give --index FILE a place that can be written"));
+          concat("the index could not be saved, so the next search will read all files again (", error.what(),
+                 "); give --index a writable FILE"));
     }
   }
   const std::string* reason = nullptr;

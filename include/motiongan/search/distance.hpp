@@ -1,5 +1,4 @@
-// The distance of generative search: how far a window of a clip is from a hypothesis at a shift of whole
-// frames, and how poses are split for computing it.
+// The distance of generative search, between a window of a clip and a hypothesis at a shift of whole frames.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -13,26 +12,27 @@
 
 namespace motiongan {
 
-/// Shifts go from -search_reach(N) to +search_reach(N) frames: N / 2, rounded down.
+/// Shifts range from -search_reach(N) to +search_reach(N) frames: N / 2, rounded down.
 inline std::size_t search_reach(std::size_t frames) { return frames / 2; }
 
 /// Root mean square difference of a window and a hypothesis, both normalised poses [N, dof], at a shift:
-/// frame t of the hypothesis lies on frame t + shift of the window, |shift| < N (SPEC 7).
+/// frame t of the hypothesis is compared with frame t + shift of the window, |shift| < N. Throws Error for
+/// another size or shift. See docs/evaluation.md.
 ///
-/// The mean is over the N - |shift| frames that overlap and all kept dimensions; 1 is a standard deviation of
-/// the training clips in every dimension. Dimensions that count from a window's first frame (the root's x, z
-/// and yaw) are counted anew from the first frame that overlaps, in both: what lies before it says where the
-/// body came from, and that frame has no partner. So a clip that holds a hypothesis anywhere has distance 0
-/// at the right shift, wherever and whichever way it was recorded. With RootRotation::velocity nothing is
+/// The mean is over the N - |shift| overlapping frames and all kept dimensions; 1 corresponds to one standard
+/// deviation of the training clips in every dimension. Dimensions that are relative to a window's first frame
+/// (the root's x, z and yaw) are made relative to the first overlapping frame, in both, because the frames
+/// before it have no counterpart. A clip that contains a hypothesis therefore has distance 0 at the right
+/// shift, wherever and in whichever direction it was recorded. With RootRotation::velocity no dimension is
 /// relative.
 inline double search_distance(const motion::MotionFormat& format, std::span<const float> window,
                               std::span<const float> hypothesis, int shift) {
   const std::size_t dof = format.dof(), size = format.frames * dof;
   const auto apart = static_cast<std::size_t>(std::abs(shift));
   require(window.size() == size && hypothesis.size() == size, "a window of ", window.size(),
-          " numbers and a hypothesis of ", hypothesis.size(), " cannot be compared; expected ", format.frames,
+          " values and a hypothesis of ", hypothesis.size(), " cannot be compared; expected ", format.frames,
           " x ", dof, " each");
-  require(apart < format.frames, "a shift of ", shift, " frames leaves nothing of windows of ",
+  require(apart < format.frames, "a shift of ", shift, " frames leaves no overlap, expected less than ",
           format.frames);
   const std::size_t count = size - apart * dof;
   const auto overlap = [&](std::span<const float> poses, bool late) {
@@ -47,12 +47,12 @@ inline double search_distance(const motion::MotionFormat& format, std::span<cons
   return std::sqrt(sum / static_cast<double>(count));
 }
 
-/// Which kept dimensions of a pose stand where they are, and which are the track that is counted anew.
+/// Splits the kept dimensions of a pose into plain ones and the track, which is made relative at each shift.
 struct SearchLayout {
   std::vector<std::size_t> plain;
-  std::vector<std::size_t> track;  ///< where windows are turned: x, z, yaw; then other relative dimensions
+  std::vector<std::size_t> track;  ///< x, z, yaw if windows are turned; then other relative dimensions
   bool turned = false;
-  double yaw_scale = 0;  ///< yaw times this is in radians
+  double yaw_scale = 0;  ///< factor from the normalised yaw to radians
 
   explicit SearchLayout(const motion::MotionFormat& format) {
     std::vector<bool> rest = format.relative_mask();
@@ -63,7 +63,7 @@ struct SearchLayout {
       yaw_scale = turning->yaw_scale;
       for (const std::size_t k : {turning->x, turning->z, turning->yaw}) {
         require(rest[k], "kept dimension ", k,
-                " turns with the window but does not count from its first frame: the motion format is wrong");
+                " turns with the window but is not relative to its first frame: bad motion format");
         track.push_back(k);
         rest[k] = false;
       }
@@ -72,16 +72,16 @@ struct SearchLayout {
       if (rest[k]) track.push_back(k);
   }
 
-  /// Columns of the plain part; at least one, which is zero where every dimension is relative.
+  /// Columns of the plain part; at least one, filled with zeros if every dimension is relative.
   std::size_t columns() const { return std::max<std::size_t>(1, plain.size()); }
 };
 
-/// Frames split as a SearchLayout says.
+/// Frames split by a SearchLayout.
 struct SearchFrames {
   std::vector<float> plain;  ///< [frames, columns()]
   std::vector<float> track;  ///< [frames, track dimensions]
 
-  /// Adds normalised poses [any number, dof].
+  /// Appends normalised poses [any number, dof].
   void add(const SearchLayout& layout, std::span<const float> poses) {
     const std::size_t dof = layout.plain.size() + layout.track.size();
     for (std::size_t row = 0; row < poses.size(); row += dof) {
@@ -91,7 +91,7 @@ struct SearchFrames {
     }
   }
 
-  /// `count` frames from `first` on as poses [count, dof] in the form of a window.
+  /// `count` frames from `first` as poses [count, dof], relative to the first of them.
   std::vector<float> window(const motion::MotionFormat& format, const SearchLayout& layout, std::size_t first,
                             std::size_t count) const {
     const std::size_t dof = format.dof(), columns = layout.columns(), dims = layout.track.size();

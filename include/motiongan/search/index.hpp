@@ -1,4 +1,4 @@
-// The index of a collection: its clips' poses in a model's format, on disk, kept up to date.
+// The search index of a collection: its clips' poses in a model's format, in memory and on disk.
 #pragma once
 #include <algorithm>
 #include <charconv>
@@ -21,23 +21,24 @@
 
 namespace motiongan {
 
-/// A file of a collection, as it was when it was read.
+/// A file of a collection, as of when it was read.
 struct SearchClip {
-  std::string path;           ///< below the collection's folder, with /
+  std::string path;           ///< relative to the collection's folder, with /
   std::int64_t size = 0;      ///< bytes
-  std::int64_t modified = 0;  ///< the file system's clock
-  std::size_t frames = 0;     ///< at the model's rate; 0 where it was left out
-  double begin = 0;           ///< seconds of the file before the first of them (a T-pose that was dropped)
-  std::string left_out;       ///< why, for people; empty where it was not
-  std::size_t first = 0;      ///< its first frame among those of the index
+  std::int64_t modified = 0;  ///< modification time, in ticks of the file system's clock
+  std::size_t frames = 0;     ///< at the model's rate; 0 if the file was left out
+  double begin = 0;           ///< seconds of the file before the first frame (a dropped T-pose)
+  std::string left_out;       ///< why the file was left out; empty if it was not
+  std::size_t first = 0;      ///< index of its first frame in SearchIndex::frames()
 };
 
-/// What a window is: a clip of the index and a frame of it.
+/// A window: a clip of the index and the window's first frame in it.
 struct SearchWindow {
   std::size_t clip = 0, frame = 0;
 };
 
-/// What of a motion format decides how a clip is encoded: models that differ in nothing else share an index.
+/// The parts of a motion format that determine how a clip is encoded: models that agree in them share an
+/// index.
 inline std::string search_key(const motion::MotionFormat& format) {
   nlohmann::json key = io::to_json(format);
   for (const char* part : {"vocabulary", "low", "high"}) key.erase(part);
@@ -46,7 +47,7 @@ inline std::string search_key(const motion::MotionFormat& format) {
 
 namespace search_detail {
 
-/// FNV-1a over eight bytes at a time, for finding damage and for naming files.
+/// FNV-1a over eight bytes at a time, for detecting damage and naming files.
 inline std::uint64_t digest(const void* data, std::size_t bytes, std::uint64_t hash = 14695981039346656037u) {
   const auto* at = static_cast<const unsigned char*>(data);
   for (; bytes >= 8; at += 8, bytes -= 8) {
@@ -73,8 +74,8 @@ inline std::string checksum(const io::SafeTensors& file) {
 
 inline constexpr const char *version_key = "motiongan_search_index", *version = "1";
 
-/// A safetensors file whose tensors go straight to where they are wanted: an index is large, and each copy of
-/// it costs a good part of a query.
+/// A safetensors file whose tensors are read straight into their destination: an index is large, and each
+/// copy of it takes a good part of a query's time.
 class IndexFile {
  public:
   explicit IndexFile(const std::filesystem::path& path) : where_(path.string()), in_(path, std::ios::binary) {
@@ -83,7 +84,7 @@ class IndexFile {
     std::uint64_t length = 0;
     require(in_.is_open() && !problem, where_, ": cannot be opened");
     read(&length, sizeof length);
-    require(length <= size - sizeof length, where_, ": was cut short or is no safetensors file");
+    require(length <= size - sizeof length, where_, ": is truncated or is not a safetensors file");
     std::string text(length, '\0');
     read(text.data(), text.size());
     begin_ = sizeof length + length;
@@ -95,7 +96,7 @@ class IndexFile {
     return found == header_.metadata.end() ? std::string() : found->second;
   }
 
-  /// The numbers of a tensor as they are stored.
+  /// The values of a tensor, as stored. Throws Error if it is missing or of another type.
   template <class T>
   std::vector<T> values(const char* name, std::string_view dtype) {
     const auto found = header_.entries.find(name);
@@ -110,13 +111,13 @@ class IndexFile {
     return out;
   }
 
-  /// Of the tensors read so far, as checksum() has it if they were all read in the order of their names.
+  /// Checksum of the tensors read so far; equals checksum() if all are read in the order of their names.
   std::string checksum_so_far() const { return hexadecimal(hash_); }
 
  private:
   void read(void* to, std::size_t bytes) {
     in_.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes));
-    require(static_cast<std::size_t>(in_.gcount()) == bytes, where_, ": cannot be read to its end");
+    require(static_cast<std::size_t>(in_.gcount()) == bytes, where_, ": is truncated or cannot be read");
   }
 
   std::string where_;
@@ -137,17 +138,17 @@ class SearchIndex {
   const std::vector<SearchClip>& clips() const { return clips_; }  ///< in the order of their paths
   const SearchFrames& frames() const { return frames_; }
 
-  /// Adds a clip's frames, normalised poses [clip.frames, dof].
+  /// Adds a clip and its normalised poses [clip.frames, dof]. Throws Error for another size.
   void add(SearchClip clip, std::span<const float> poses) {
     require(poses.size() == clip.frames * format_.dof(), "clip ", clip.path, " of ", clip.frames,
-            " frames has ", poses.size(), " numbers, expected ", clip.frames, " x ", format_.dof());
+            " frames has ", poses.size(), " values, expected ", clip.frames, " x ", format_.dof());
     clip.first = rows_;
     rows_ += clip.frames;
     frames_.add(layout_, poses);
     clips_.push_back(std::move(clip));
   }
 
-  /// Adds a clip as another index of the same format holds it.
+  /// Copies a clip from another index of the same format.
   void add_from(const SearchIndex& other, const SearchClip& clip) {
     const auto copy = [&](const std::vector<float>& from, std::vector<float>& to, std::size_t width) {
       const auto begin = from.begin() + static_cast<std::ptrdiff_t>(clip.first * width);
@@ -160,9 +161,9 @@ class SearchIndex {
     rows_ += clip.frames;
   }
 
-  /// Every hop-th window of every clip, and the one that ends with it.
+  /// The windows of every clip, `hop` frames apart, and the last one. Throws Error if hop is 0.
   std::vector<SearchWindow> windows(std::size_t hop) const {
-    require(hop > 0, "windows 0 frames apart were asked for, expected at least 1");
+    require(hop > 0, "hop is 0, expected at least 1");
     std::vector<SearchWindow> out;
     for (std::size_t c = 0; c < clips_.size(); ++c) {
       if (clips_[c].frames < format_.frames) continue;
@@ -173,19 +174,19 @@ class SearchIndex {
     return out;
   }
 
-  /// First frames of windows among frames().
+  /// The windows' first frames, as indices into frames().
   std::vector<std::size_t> starts(const std::vector<SearchWindow>& windows) const {
     std::vector<std::size_t> out;
     for (const SearchWindow& window : windows) out.push_back(clips_.at(window.clip).first + window.frame);
     return out;
   }
 
-  /// Poses of a window, [N, dof].
+  /// The normalised poses of a window, [N, dof].
   std::vector<float> poses(const SearchWindow& window) const {
     return frames_.window(format_, layout_, clips_.at(window.clip).first + window.frame, format_.frames);
   }
 
-  /// Writes the index beside `path`, then renames it.
+  /// Writes the index to a temporary file, then renames it to `path`.
   void write(const std::filesystem::path& path) const {
     using io::SafeTensor;
     std::vector<std::int64_t> size, modified, frames;
@@ -214,8 +215,8 @@ class SearchIndex {
     file.write(path);
   }
 
-  /// An index that write() wrote for this format; none where it was written for another. Error, saying what
-  /// is wrong, where the file is damaged or no index.
+  /// Reads an index written by write(); nothing if it was written for another format. Throws Error, saying
+  /// what is wrong, if the file is damaged or not an index.
   static std::optional<SearchIndex> read(const std::filesystem::path& path,
                                          const motion::MotionFormat& format) {
     search_detail::IndexFile file(path);
@@ -252,7 +253,7 @@ class SearchIndex {
     }
     require(index.frames_.plain.size() == index.rows_ * index.layout_.columns() &&
                 index.frames_.track.size() == index.rows_ * index.layout_.track.size(),
-            path.string(), ": holds another number of frames than its clips have");
+            path.string(), ": its number of frames differs from that of its clips");
     return index;
   }
 

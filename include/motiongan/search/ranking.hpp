@@ -1,4 +1,4 @@
-// From distances of windows to a list of clips.
+// Ranks clips by the distances of their windows to the hypotheses.
 #pragma once
 #include <algorithm>
 #include <limits>
@@ -10,15 +10,14 @@
 
 namespace motiongan {
 
-/// A hypothesis near a window.
+/// A hypothesis and its distance to a window.
 struct SearchNeighbour {
   std::size_t hypothesis = 0;
-  int shift = 0;        ///< frames; frame t of the hypothesis lies on frame t + shift of the window
+  int shift = 0;        ///< frame t of the hypothesis matches frame t + shift of the window
   double distance = 0;  ///< search_distance()
 };
 
-/// A window that was found, with its one or two nearest hypotheses, nearest first; its distance is the
-/// first's.
+/// A search result: a window and its one or two nearest hypotheses, nearest first.
 struct SearchHit {
   SearchWindow window;
   std::vector<SearchNeighbour> nearest;
@@ -27,24 +26,24 @@ struct SearchHit {
 
 struct SearchRanking {
   std::vector<SearchHit> hits;  ///< nearest first
-  double median = 0;  ///< of all clips' (or windows') distances: how near a clip is that nobody asked for
-  std::size_t windows = 0;  ///< that were compared
+  double median = 0;  ///< median distance of all clips (or windows), for comparison
+  std::size_t windows = 0;  ///< number of windows compared
 };
 
 struct SearchOptions {
-  std::size_t top = 10;       ///< results
-  std::size_t hop = 0;        ///< frames between two windows of a clip; 0: half a window
-  bool every_window = false;  ///< list windows, not clips: a clip may stand there more than once
+  std::size_t top = 10;       ///< number of results
+  std::size_t hop = 0;        ///< frames between windows of a clip; 0: half a window
+  bool every_window = false;  ///< rank windows rather than clips: a clip may appear more than once
 };
 
-/// Frames between two windows of a clip that `options` ask for.
+/// The number of frames between windows of a clip, with the default resolved.
 inline std::size_t search_hop(const motion::MotionFormat& format, const SearchOptions& options) {
   return options.hop > 0 ? options.hop : std::max<std::size_t>(1, format.frames / 2);
 }
 
-/// The `top` nearest clips, each by its nearest window, or the nearest windows of all clips. Distances of the
-/// list are computed again in double by search_distance(), and order it; equal ones stand in the order of
-/// their clips and frames.
+/// The `top` nearest clips, each by its nearest window, or, with `every_window`, the nearest windows of all
+/// clips. The distances of the results are recomputed in double by search_distance() and determine the order;
+/// ties are in the order of clips and frames. Throws Error if `found` does not fit windows and hypotheses.
 inline SearchRanking rank(const SearchIndex& index, const std::vector<SearchWindow>& windows,
                           const WindowDistances& found, const std::vector<std::vector<float>>& hypotheses,
                           std::size_t top, bool every_window = false) {
@@ -75,7 +74,7 @@ inline SearchRanking rank(const SearchIndex& index, const std::vector<SearchWind
   std::nth_element(candidates.begin(), middle, candidates.end());
   out.median = static_cast<double>(middle->distance);
 
-  // Some more than are asked for: close to 0 the device's distances are not exact.
+  // Keep some spare candidates: near 0 the device's distances are inexact.
   const std::size_t kept = std::min(candidates.size(), top + 16);
   std::partial_sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(kept),
                     candidates.end());
@@ -104,8 +103,8 @@ inline SearchRanking rank(const SearchIndex& index, const std::vector<SearchWind
   return out;
 }
 
-/// The clips of an index nearest to the hypotheses, each [N, dof] as Dvgan::generate_poses() makes them.
-/// Distances are computed on the context's device.
+/// Searches an index for the clips nearest to the hypotheses, normalised poses [N, dof] each, as made by
+/// Dvgan::generate_poses(). Distances are computed on the context's device. Throws Error without hypotheses.
 inline SearchRanking search(const Context& context, const SearchIndex& index,
                             const std::vector<std::vector<float>>& hypotheses,
                             const SearchOptions& options = {}) {

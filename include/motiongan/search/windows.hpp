@@ -1,4 +1,4 @@
-// Windows of a collection against hypotheses, on the device.
+// Distances between the windows of a collection and hypotheses, computed on the device.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -13,32 +13,32 @@
 
 namespace motiongan {
 
-/// Of every window and hypothesis the distance at the best shift, and the shift; [windows, hypotheses] each.
+/// Distance at the best shift, and that shift in frames, of every window and hypothesis.
 struct WindowDistances {
   std::size_t hypotheses = 0;
-  std::vector<float> distance;
-  std::vector<std::int32_t> shift;
+  std::vector<float> distance;      ///< [windows, hypotheses]
+  std::vector<std::int32_t> shift;  ///< [windows, hypotheses]
 };
 
 struct SearchWindowsOptions {
-  std::size_t chunk = 0;  ///< windows at a time; 0: as many as make 16 MB of spectra
+  std::size_t chunk = 0;  ///< windows per batch; 0: as many as fit 16 MB of spectra
   std::size_t keep_bytes = std::size_t{1}
-                           << 30;  ///< spectra are kept for the next query if no more than this
+                           << 30;  ///< keep spectra for later queries if they fit in this
 };
 
-/// Windows on the device, ready for queries.
+/// The windows of a collection, prepared for queries on the device.
 ///
-/// The distance of search_distance() needs, for every window, hypothesis and shift s, the sum over frames and
-/// dimensions of window[t + s] hypothesis[t]: a correlation, which is a product of spectra. Windows are
-/// padded with zeros to N + N / 2 frames (no shift up to N / 2 wraps around), so that a pair of N = 32 costs
-/// 25 complex products a dimension where all pairs of frames are 1024: a tenth of the arithmetic. Squares are
-/// summed apart; the few dimensions that are counted anew for each shift are multiplied shift by shift. Sums
-/// have a fixed order: equal calls give equal bits, whatever the chunk. In float a distance near 0 is off by
-/// up to about 1e-3, for it is the difference of large sums.
+/// search_distance() needs, for every window, hypothesis and shift s, the sum over frames and dimensions of
+/// window[t + s] hypothesis[t]: a cross-correlation, computed as a product of Fourier spectra. Windows are
+/// zero-padded to N + N / 2 frames, so that no shift up to N / 2 wraps around. For N = 32 a pair costs 25
+/// complex products per dimension instead of 1024 products of frames: a tenth of the arithmetic. Squares are
+/// summed separately, and the few relative dimensions are multiplied shift by shift. Sums have a fixed order:
+/// equal calls give equal bits, whatever the chunk. In float, a distance near 0 has an error of up to about
+/// 1e-3, because it is the difference of large sums.
 class SearchWindows {
  public:
-  /// `frames` are those of all clips, `starts` the first frame of each window in them, ascending. `frames`
-  /// must outlive this.
+  /// `frames` holds the frames of all clips and must outlive this object; `starts` are the first frames of
+  /// the windows, as ascending indices into it. Throws Error if a window does not lie within the frames.
   SearchWindows(const Context& context, const motion::MotionFormat& format, const SearchFrames& frames,
                 std::vector<std::size_t> starts, const SearchWindowsOptions& options = {})
       : context_(context),
@@ -52,7 +52,7 @@ class SearchWindows {
     for (std::size_t i = 0; i < starts_.size(); ++i)
       require(starts_[i] + format.frames <= rows && (i == 0 || starts_[i] >= starts_[i - 1]), "window ", i,
               " starts at frame ", starts_[i], " of ", rows, " and has ", format.frames,
-              " frames; expected windows in order that lie in the frames");
+              " frames; expected windows in ascending order that lie within the frames");
     chunk_ =
         options.chunk > 0 ? options.chunk : std::max<std::size_t>(1, (std::size_t{16} << 20) / window_bytes);
     keeps_ = starts_.size() * window_bytes <= options.keep_bytes;
@@ -61,7 +61,8 @@ class SearchWindows {
 
   std::size_t size() const { return starts_.size(); }
 
-  /// Distances to hypotheses, normalised poses [N, dof] each.
+  /// Distances to hypotheses, normalised poses [N, dof] each. Throws Error if there are none or one has
+  /// another size.
   WindowDistances operator()(const std::vector<std::vector<float>>& hypotheses) const {
     require(!hypotheses.empty(), "a search needs at least one hypothesis");
     const Query query = prepare(hypotheses);
@@ -75,7 +76,7 @@ class SearchWindows {
     return out;
   }
 
-  /// Bytes of spectra on the device after the first query.
+  /// Bytes of spectra kept on the device after the first query.
   std::size_t kept_bytes() const { return keeps_ ? starts_.size() * spectrum() * context_.real_size() : 0; }
 
  private:
@@ -83,15 +84,15 @@ class SearchWindows {
     std::size_t windows;
     Indices starts;
     Tensor spectra;  ///< [frequencies, windows, 2 columns]
-    Tensor own;      ///< [windows, reach + 1, 4], squares of what overlaps, turns
+    Tensor own;      ///< [windows, reach + 1, 4], squares over the overlap, turns
     Tensor track;    ///< [frames, track]
   };
   struct Query {
     std::size_t hypotheses, lanes;
     Tensor spectra;  ///< [frequencies, 2 columns, 2 lanes]
     Tensor squares;  ///< [reach + 1, 2, lanes]
-    Tensor track;    ///< [reach + 1, frames, track, lanes], counted from frame s on
-    Tensor sums;     ///< [reach + 1, 2, track, lanes], of track over what overlaps
+    Tensor track;    ///< [reach + 1, frames, track, lanes], relative to frame s
+    Tensor sums;     ///< [reach + 1, 2, track, lanes], of track over the overlap
   };
 
   std::size_t reach() const { return search_reach(format_.frames); }
@@ -118,7 +119,7 @@ class SearchWindows {
     turns_ = Tensor::from(context_, {reach() + 1, frequencies_, 2}, turns);
   }
 
-  /// Frames of the windows from `first` on, and their spectra.
+  /// Uploads the windows from `first` and computes their spectra.
   Chunk load(std::size_t first) const {
     const std::size_t count = std::min(chunk_, size() - first), columns = layout_.columns();
     const std::size_t dims = layout_.track.size(), row = starts_[first];
@@ -143,7 +144,7 @@ class SearchWindows {
     return chunk;
   }
 
-  /// What the device needs of the hypotheses. Lanes past the last one hold zeros.
+  /// Prepares the hypotheses for the device. Lanes past the last hypothesis are zero.
   Query prepare(const std::vector<std::vector<float>>& hypotheses) const {
     const std::size_t frames = format_.frames, columns = layout_.columns(), dims = layout_.track.size();
     const std::size_t width = context_.vector_width();
@@ -155,11 +156,12 @@ class SearchWindows {
       cosine[i] = std::cos(angle(1, i)), sine[i] = std::sin(angle(1, i));
     for (std::size_t h = 0; h < hypotheses.size(); ++h) {
       require(hypotheses[h].size() == frames * format_.dof(), "hypothesis ", h, " has ", hypotheses[h].size(),
-              " numbers, expected ", frames, " x ", format_.dof());
+              " values, expected ", frames, " x ", format_.dof());
       SearchFrames split;
       split.add(layout_, hypotheses[h]);
       for (std::size_t f = 0; f < frequencies_; ++f) {
-        // The inverse transform: frequencies but the first and, of an even length, the last stand for two.
+        // Inverse transform: all frequencies but 0 and, for an even length, the last represent a conjugate
+        // pair.
         const bool once = f == 0 || 2 * f == length_;
         const double weight = (once ? 1.0 : 2.0) / static_cast<double>(length_);
         for (std::size_t k = 0; k < columns; ++k) {
@@ -170,7 +172,7 @@ class SearchWindows {
             imaginary -= value * sine[turn];
             turn = turn + f < length_ ? turn + f : turn + f - length_;
           }
-          // Window times conjugate hypothesis: rows are the window's real and imaginary parts.
+          // Window times conjugate hypothesis: the rows are the window's real and imaginary parts.
           double* const at = &spectra[(f * 2 * columns + k) * 2 * lanes + h];
           at[0] = weight * real, at[lanes] = -weight * imaginary;
           at[columns * 2 * lanes] = weight * imaginary, at[columns * 2 * lanes + lanes] = weight * real;
@@ -178,7 +180,7 @@ class SearchWindows {
       }
       for (std::size_t s = 0; s <= reach(); ++s)
         for (const std::size_t early : {std::size_t{0}, std::size_t{1}}) {
-          // Shifted by s the hypothesis's first frames overlap, by -s those from frame s on.
+          // At shift s the hypothesis's first N - s frames overlap, at -s those from frame s.
           const std::size_t from = early * s, at = s * 2 + early;
           const std::vector<float> part = split.window(format_, layout_, from, frames - s);
           for (const float value : part)
@@ -235,7 +237,7 @@ class SearchWindows {
   std::size_t length_, frequencies_, chunk_ = 0;
   bool keeps_ = false;
   Tensor table_, turns_;
-  mutable std::vector<Chunk> chunks_;  ///< made by the first query
+  mutable std::vector<Chunk> chunks_;  ///< filled by the first query
 };
 
 }  // namespace motiongan

@@ -4,6 +4,7 @@
 #include "motiongan/core/random.hpp"
 #include "motiongan/data/action_dataset.hpp"
 #include "motiongan/ops/cross_entropy.hpp"
+#include "motiongan/train/clip_buffer.hpp"
 
 namespace motiongan {
 
@@ -27,25 +28,18 @@ class ActionSampler {
         classes_(data.format.classes.size()),
         balanced_(balanced) {
     require(!clips.empty(), "there are no clips to draw windows from");
-    const std::size_t dof = data.format.dof();
-    std::size_t rows = 0;
+    std::vector<std::span<const float>> poses;
     std::vector<std::vector<std::size_t>> by_class(classes_);
     for (const motion::ActionClip& clip : clips) {
       require(clip.label < classes_, "clip '", clip.id, "' has label ", clip.label, ", expected less than ",
               classes_);
       by_class[clip.label].push_back(clips_.size());
-      clips_.push_back({rows, data.starts(clip), clip.label});
-      rows += clip.frames;
+      clips_.push_back({data.starts(clip), clip.label});
+      poses.emplace_back(clip.poses);
     }
     for (auto& members : by_class)
       if (!members.empty()) by_class_.push_back(std::move(members));
-    poses_ = Tensor(context, {rows, dof});
-    std::size_t at = 0;
-    for (const motion::ActionClip& clip : clips) {
-      poses_.view(at * dof, {clip.frames, dof}).write(std::span<const float>(clip.poses));
-      at += clip.frames;
-    }
-    relative_ = Indices(context, std::vector<cl_int>(dof, 0));
+    buffer_ = ClipBuffer(context, data.format.dof(), poses);
   }
 
   /// `size` windows, each at a start of its clip, all uniform.
@@ -62,13 +56,11 @@ class ActionSampler {
         index = random_below(key, b, clips_.size());
       }
       const Clip& clip = clips_[index];
-      rows.push_back(static_cast<cl_int>(clip.first_row + random_below(key, b, clip.starts, 1)));
+      rows.push_back(buffer_.row(index, random_below(key, b, clip.starts, 1)));
       batch.labels.push_back(clip.label);
     }
-    const std::size_t dof = poses_.dim(1), window = 2 * frames_;
-    batch.motion = Tensor(context_, {window, size, dof});
-    context_.launch("layout", "gather_windows", LaunchGrid::items(window * size), poses_, Indices(context_, rows),
-                    relative_, batch.motion, window, size, dof, std::size_t{1}, dof, dof, dof, KernelReal{0});
+    const std::size_t dof = buffer_.dof();
+    batch.motion = buffer_.gather(rows, 2 * frames_);
     batch.prior = batch.motion.view(0, {frames_, size, dof});
     batch.future = batch.motion.view(frames_ * size * dof, {frames_, size, dof});
     batch.classes = one_hot(context_, batch.labels, classes_);
@@ -77,7 +69,7 @@ class ActionSampler {
 
  private:
   struct Clip {
-    std::size_t first_row, starts, label;
+    std::size_t starts, label;
   };
 
   Context context_;
@@ -85,8 +77,7 @@ class ActionSampler {
   bool balanced_;
   std::vector<Clip> clips_;
   std::vector<std::vector<std::size_t>> by_class_;  // clips of each class that has some
-  Tensor poses_;                                    // [all frames, dof]
-  Indices relative_;                                // none is
+  ClipBuffer buffer_;
 };
 
 }  // namespace motiongan

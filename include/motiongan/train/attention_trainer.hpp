@@ -1,4 +1,4 @@
-// Training the attention WGAN-GP (Malek-Podjaski & Deligianni; SPEC 5): critic, classifier and generator,
+// Training the attention WGAN-GP (Malek-Podjaski & Deligianni): critic, classifier and generator,
 // each through the others but without a gradient for them.
 #pragma once
 #include "motiongan/networks/attention_classifier.hpp"
@@ -6,71 +6,92 @@
 #include "motiongan/models/action_gan.hpp"
 #include "motiongan/networks/motion_losses.hpp"
 #include "motiongan/train/action_windows.hpp"
-#include "motiongan/train/checkpoint.hpp"
+#include "motiongan/optim/adam.hpp"
+#include "motiongan/train/run.hpp"
 #include "motiongan/train/wgan_gp.hpp"
 
 namespace motiongan {
 
-/// Every number of SPEC 5; the defaults are the paper's.
+/// The defaults are the paper's (Malek-Podjaski & Deligianni), where it gives them.
 struct AttentionTrainOptions {
   std::size_t iterations = 20'000;  ///< each is critic_steps, a classifier step and generator_steps
   std::size_t critic_steps = 5;     ///< n_critic
   std::size_t generator_steps = 1;  ///< n_generator
   std::size_t batch = 64;
-  std::size_t rollouts = 2;       ///< n_ar: how many times the generator goes on from its own output
+  std::size_t rollouts = 2;       ///< n_ar: how many seconds the generator makes in a row, fed with its output
   double lambda_gp = 10;          ///< weight of the gradient penalty
   double weight_clip = 0;         ///< above 0: clip the critic's weights there, instead of the penalty
-  double skeleton_weight = 1;     ///< of L_skel; 0: without
-  double blend_weight = 1;        ///< of L_blend; 0: without
-  double class_weight = 1;        ///< of L_class; 0: without
+  double skeleton_weight = 1;     ///< of L_skel (eq. 9); 0: without
+  double blend_weight = 1;        ///< of L_blend (eq. 10); 0: without
+  double class_weight = 1;        ///< of L_class (eq. 11); 0: without
   bool skeleton_vectors = false;  ///< L_skel compares bone vectors, as eq. 9 is printed, not their lengths
-  bool critic_classes = false;    ///< tell the critic the class
-  bool balanced = true;           ///< draw classes alike, however many clips they have
+  bool critic_classes = false;    ///< give the critic the class
+  bool balanced = true;           ///< draw classes with equal probability, however many clips they have
   AdamOptions adam{};             ///< of all networks
   std::uint64_t seed = 1;
+
+  /// Steps of an iteration that have random numbers of their own.
+  std::size_t steps() const { return critic_steps + 1 + generator_steps; }
+
+  void list_fields(FieldList& list) {
+    const auto loss_weight = [&](double& member, const char* key, const char* help) {
+      list.add(member, {.key = key, .help = help, .range = Range::at_least(0)});
+    };
+    list.add(iterations, {.key = "iterations",
+                          .help = "how long to train",
+                          .range = Range::at_least(1),
+                          .saved = false});
+    list.add(critic_steps,
+             {.key = "critic_steps", .help = "critic steps in each iteration", .range = Range::at_least(1)});
+    list.add(generator_steps, {.key = "generator_steps",
+                               .help = "generator steps in each iteration",
+                               .range = Range::at_least(1)});
+    list.add(batch, {.key = "batch", .help = "windows in a step", .range = Range::at_least(1)});
+    list.add(rollouts, {.key = "rollouts",
+                        .help = "how many seconds in a row the generator makes, fed with its own output",
+                        .range = Range::between(1, 64)});
+    list.add(lambda_gp, {.key = "lambda_gp",
+                         .help = "weight of the gradient penalty",
+                         .range = Range::at_least(0),
+                         .option = "--lambda"});
+    list.add(weight_clip, {.key = "weight_clip",
+                           .help = "above 0: clip the critic's weights there, instead of the penalty",
+                           .range = Range::at_least(0)});
+    loss_weight(skeleton_weight, "skeleton_weight", "weight of the bone-length loss; 0: without");
+    loss_weight(blend_weight, "blend_weight", "weight of the loss at the seam; 0: without");
+    loss_weight(class_weight, "class_weight", "weight of the classification loss; 0: without");
+    list.add(skeleton_vectors,
+             {.key = "skeleton_vectors", .help = "compare bone vectors, not their lengths"});
+    list.add(critic_classes,
+             {.key = "critic_classes", .help = "give the critic the class", .group = "Model"});
+    list.add(balanced, {.key = "balanced",
+                        .help = "draw all classes with equal probability, however many clips they have"});
+    adam.list_fields(list);
+    list.add(seed, {.key = "seed", .help = "of the initial weights, batches and noise"});
+  }
 };
 
-/// What a checkpoint keeps of them: all but `iterations`, which a resumed run may have more of.
-inline nlohmann::json to_json(const AttentionTrainOptions& o) {
-  return {{"critic_steps", o.critic_steps},
-          {"generator_steps", o.generator_steps},
-          {"batch", o.batch},
-          {"rollouts", o.rollouts},
-          {"lambda_gp", o.lambda_gp},
-          {"weight_clip", o.weight_clip},
-          {"skeleton_weight", o.skeleton_weight},
-          {"blend_weight", o.blend_weight},
-          {"class_weight", o.class_weight},
-          {"skeleton_vectors", o.skeleton_vectors},
-          {"critic_classes", o.critic_classes},
-          {"balanced", o.balanced},
-          {"learning_rate", o.adam.learning_rate},
-          {"beta1", o.adam.beta1},
-          {"beta2", o.adam.beta2},
-          {"epsilon", o.adam.epsilon},
-          {"seed", o.seed}};
-}
-
-/// What the last iteration came to; reading it waits for the device.
+/// Losses of the last iteration.
 struct AttentionLosses {
-  double wasserstein = 0;  ///< mean D(real) - mean D(fake) of the last critic step
-  double penalty = 0;      ///< mean (|gradient| - 1)^2; 0 where weights are clipped instead
-  double adversarial = 0;  ///< -mean D(fake) of the generator's step
-  double skeleton = 0, blend = 0,
-         classification = 0;  ///< the generator's, unweighted; 0 where their weight is
+  double wasserstein = 0;     ///< mean D(real) - mean D(fake) of the last critic step
+  double penalty = 0;         ///< mean (|gradient| - 1)^2; 0 where weights are clipped instead
+  double adversarial = 0;     ///< -mean D(fake) of the generator's step
+  double skeleton = 0;        ///< the generator's L_skel, unweighted; 0 if its weight is 0
+  double blend = 0;           ///< the generator's L_blend, likewise
+  double classification = 0;  ///< the generator's L_class, likewise
   double classifier = 0;      ///< the classifier's own loss on real motion
-  double accuracy = 0;        ///< share of that batch that it got right
+  double accuracy = 0;        ///< fraction of that batch that it classified correctly
   double gamma = 0;           ///< of the generator's attention; 0 without
+
+  /// The columns of the log.
+  std::vector<NamedLoss> named() const {
+    return {{"wasserstein", wasserstein}, {"penalty", penalty},   {"adversarial", adversarial},
+            {"skeleton", skeleton},       {"blend", blend},       {"classification", classification},
+            {"classifier", classifier},   {"accuracy", accuracy}, {"gamma", gamma}};
+  }
 };
 
-/// As they stand in the log.
-inline std::vector<LossColumn> columns(const AttentionLosses& l) {
-  return {{"wasserstein", l.wasserstein}, {"penalty", l.penalty},   {"adversarial", l.adversarial},
-          {"skeleton", l.skeleton},       {"blend", l.blend},       {"classification", l.classification},
-          {"classifier", l.classifier},   {"accuracy", l.accuracy}, {"gamma", l.gamma}};
-}
-
-/// Share of rows of logits [B, Y] whose largest number is at the label.
+/// Fraction of the rows of logits [B, Y] whose largest number is at the label.
 inline double accuracy_of(const Tensor& logits, std::span<const std::size_t> labels) {
   const std::vector<double> values = logits.to_host<double>();
   const std::size_t classes = values.size() / labels.size();
@@ -84,12 +105,10 @@ inline double accuracy_of(const Tensor& logits, std::span<const std::size_t> lab
 }
 
 /// Trains an ActionGan on a data set. The three kinds of steps are also callable by themselves.
-class AttentionTrainer {
+class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, AttentionLosses> {
  public:
-  AttentionTrainer(ActionGan& model, const motion::ActionDataset& data,
-                   const AttentionTrainOptions& options)
-      : model_(model),
-        options_(checked(options)),
+  AttentionTrainer(ActionGan& model, const motion::ActionDataset& data, const AttentionTrainOptions& options)
+      : ModelTrainer(model, options),
         windows_(model.context(), data, data.train, options.balanced),
         critic_(Initializer(model.context(), model.options().seed + 1),
                 {.dof = model.format().dof(),
@@ -105,32 +124,21 @@ class AttentionTrainer {
         generator_adam_(named_parameters(model), options.adam),
         critic_adam_(named_parameters(critic_), options.adam),
         classifier_adam_(named_parameters(classifier_), options.adam) {
-    model.generator();  // refuses the baseline
-    require(data.format.dof() == model.format().dof() && data.format.frames == model.format().frames &&
-                data.format.classes == model.format().classes,
-            "the data set (", data.format.dof(), " dof, ", data.format.frames, " frames, ",
-            data.format.classes.size(), " classes) does not fit the model (", model.format().dof(), ", ",
-            model.format().frames, ", ", model.format().classes.size(), ")");
-    require((options.iterations + 1) * steps_each() < (std::size_t{1} << 24), options.iterations,
-            " iterations of ", steps_each(),
-            " steps are more than the random numbers' counter holds (2^24 steps)");
+    model.generator();  // throws for the baseline
+    detail::require_same_format(data.format, model.format());
   }
 
-  ActionGan& model() { return model_; }
   AttentionCritic& critic() { return critic_; }
   AttentionClassifier& classifier() { return classifier_; }
-  const AttentionTrainOptions& options() const { return options_; }
-  std::size_t iteration() const { return iteration_; }
-  void set_iteration(std::size_t iteration) { iteration_ = iteration; }
-  std::vector<TrainedPart> parts() {
+  std::vector<TrainedPart> parts() override {
     return {{"generator", named_parameters(model_), &generator_adam_},
             {"critic", named_parameters(critic_), &critic_adam_},
             {"classifier", named_parameters(classifier_), &classifier_adam_}};
   }
 
   /// critic_steps critic steps, a classifier step, generator_steps generator steps.
-  void iterate() {
-    auto step = static_cast<std::uint32_t>(iteration_ * steps_each());
+  void iterate() override {
+    auto step = static_cast<std::uint32_t>(iteration_ * options_.steps());
     for (std::size_t i = 0; i < options_.critic_steps; ++i) critic_step(step++);
     classifier_step(step++);
     for (std::size_t i = 0; i < options_.generator_steps; ++i) generator_step(step++);
@@ -149,23 +157,19 @@ class AttentionTrainer {
       const std::size_t times = 1 + random_below(key.with(RandomStream::rollout), 0, options_.rollouts);
       for (std::size_t r = 0; r < times; ++r) {
         if (r > 0) prior = future;
-        future = model_.make(prior, classes, noise_key(key, r));
+        future = model_.forward(prior, classes, noise_key(key, r));
       }
       future = concatenate({prior, future}, 0);
     }
     const CriticFn critic = [&](const Var& x) { return score(x, classes); };
     const CriticFn critic_of_pairs = [&](const Var& x) { return score(x, concatenate({classes, classes}, 0)); };
-    CriticLoss loss;
-    if (options_.weight_clip > 0) {
-      loss.scores = critic_of_pairs(concatenate({Var::constant(batch.motion), future}, 1));
-      loss.wasserstein = mean(slice(loss.scores, 0, 0, options_.batch)) -
-                         mean(slice(loss.scores, 0, options_.batch, options_.batch));
-      loss.loss = -loss.wasserstein;
-    } else {
-      loss = critic_loss(critic_of_pairs, critic, batch.motion, future.value(),
-                         random_uniform(model_.context(), key.with(RandomStream::interpolation), options_.batch),
-                         options_.lambda_gp);
-    }
+    const CriticLoss loss =
+        options_.weight_clip > 0
+            ? critic_loss(critic_of_pairs, batch.motion, future.value())
+            : critic_loss(critic_of_pairs, critic, batch.motion, future.value(),
+                          random_uniform(model_.context(), key.with(RandomStream::interpolation),
+                                         options_.batch),
+                          options_.lambda_gp);
     critic_adam_.step(grad(loss.loss, critic_adam_.parameters()));
     if (options_.weight_clip > 0) critic_adam_.clip(options_.weight_clip);
     wasserstein_ = loss.wasserstein.detach();
@@ -197,7 +201,7 @@ class AttentionTrainer {
     std::vector<Var> priors, futures;
     for (std::size_t r = 0; r < options_.rollouts; ++r) {
       priors.push_back(r == 0 ? real_prior : futures.back());
-      futures.push_back(model_.make(priors.back(), classes, noise_key(key, r)));
+      futures.push_back(model_.forward(priors.back(), classes, noise_key(key, r)));
     }
     // All rollouts side by side: a mean over the batch is the mean over them.
     const auto repeated = [&](const Var& x, std::size_t axis) {
@@ -231,7 +235,7 @@ class AttentionTrainer {
                        value(loss.classification)};
   }
 
-  AttentionLosses losses() const {
+  AttentionLosses losses() const override {
     require(!generator_loss_.total.empty(), "no iteration has run yet");
     const auto value = [](const Var& part) { return part.empty() ? 0.0 : part.item(); };
     const auto& attention = model_.generator().attention();
@@ -247,17 +251,6 @@ class AttentionTrainer {
   }
 
  private:
-  static const AttentionTrainOptions& checked(const AttentionTrainOptions& o) {
-    require(o.batch > 0 && o.critic_steps > 0 && o.generator_steps > 0 && o.rollouts > 0,
-            "batch, critic_steps, generator_steps and rollouts must be positive");
-    require(o.rollouts <= 64, "rollouts is ", o.rollouts, ", expected at most 64");
-    require(o.weight_clip >= 0 && o.skeleton_weight >= 0 && o.blend_weight >= 0 && o.class_weight >= 0,
-            "weight_clip and the losses' weights cannot be below 0");
-    return o;
-  }
-
-  std::size_t steps_each() const { return options_.critic_steps + 1 + options_.generator_steps; }
-
   /// Each rollout of a step has noise of its own.
   static RandomKey noise_key(RandomKey key, std::size_t rollout) {
     key.first_frame = static_cast<std::int32_t>(rollout);
@@ -268,8 +261,6 @@ class AttentionTrainer {
     return options_.critic_classes ? critic_(motion, classes) : critic_(motion);
   }
 
-  ActionGan& model_;
-  AttentionTrainOptions options_;
   ActionSampler windows_;
   AttentionCritic critic_;
   AttentionClassifier classifier_;
@@ -279,7 +270,13 @@ class AttentionTrainer {
   GeneratorLoss generator_loss_;
   Tensor logits_;
   std::vector<std::size_t> labels_;
-  std::size_t iteration_ = 0;
 };
+
+/// Trains the attention generator from start to end, see run_training().
+inline RunResult train(ActionGan& model, const motion::ActionDataset& data,
+                       const AttentionTrainOptions& options, const RunOptions& run = {}) {
+  AttentionTrainer trainer(model, data, options);
+  return run_training(trainer, [&](const std::filesystem::path& path) { data.write_split(path); }, run);
+}
 
 }  // namespace motiongan

@@ -1,82 +1,85 @@
-// Training the second paper's LSTM baseline (SPEC 5): it copies the second that follows a prior.
+// Training the LSTM baseline (Malek-Podjaski & Deligianni): it learns to reproduce the second of motion that
+// follows a prior.
 #pragma once
 #include "motiongan/models/action_gan.hpp"
 #include "motiongan/train/action_windows.hpp"
-#include "motiongan/train/checkpoint.hpp"
+#include "motiongan/optim/adam.hpp"
+#include "motiongan/train/run.hpp"
 
 namespace motiongan {
 
 struct BaselineTrainOptions {
   std::size_t iterations = 20'000;
   std::size_t batch = 64;
-  bool balanced = true;  ///< draw classes alike, however many clips they have
+  bool balanced = true;  ///< draw classes with equal probability, however many clips they have
   AdamOptions adam{};
   std::uint64_t seed = 1;
+
+  std::size_t steps() const { return 1; }
+
+  void list_fields(FieldList& list) {
+    list.add(iterations, {.key = "iterations",
+                          .help = "how long to train",
+                          .range = Range::at_least(1),
+                          .saved = false});
+    list.add(batch, {.key = "batch", .help = "windows in a step", .range = Range::at_least(1)});
+    list.add(balanced, {.key = "balanced",
+                        .help = "draw all classes with equal probability, however many clips they have"});
+    adam.list_fields(list);
+    list.add(seed, {.key = "seed", .help = "of the initial weights, batches and noise"});
+  }
 };
 
-/// What a checkpoint keeps of them: all but `iterations`, which a resumed run may have more of.
-inline nlohmann::json to_json(const BaselineTrainOptions& o) {
-  return {{"batch", o.batch},      {"balanced", o.balanced}, {"learning_rate", o.adam.learning_rate},
-          {"beta1", o.adam.beta1}, {"beta2", o.adam.beta2},  {"epsilon", o.adam.epsilon},
-          {"seed", o.seed}};
-}
-
-/// What the last iteration came to; reading it waits for the device.
+/// Losses of the last iteration.
 struct BaselineLosses {
-  double error = 0;  ///< mean square of what is wrong with the T frames made, normalised
-};
+  double error = 0;  ///< MSE of the generated frames, normalised
 
-/// As they stand in the log.
-inline std::vector<LossColumn> columns(const BaselineLosses& losses) { return {{"error", losses.error}}; }
+  /// The columns of the log.
+  std::vector<NamedLoss> named() const { return {{"error", error}}; }
+};
 
 /// Trains an ActionGan whose generator is the LSTM.
-class BaselineTrainer {
+class BaselineTrainer : public ModelTrainer<ActionGan, BaselineTrainOptions, BaselineLosses> {
  public:
   BaselineTrainer(ActionGan& model, const motion::ActionDataset& data, const BaselineTrainOptions& options)
-      : model_(model),
-        options_(options),
+      : ModelTrainer(model, options),
         windows_(model.context(), data, data.train, options.balanced),
         adam_(named_parameters(model), options.adam) {
-    model.baseline();  // refuses the attention model
-    require(options.batch > 0, "batch must be positive");
-    require(data.format.dof() == model.format().dof() && data.format.frames == model.format().frames &&
-                data.format.classes == model.format().classes,
-            "the data set (", data.format.dof(), " dof, ", data.format.frames, " frames, ",
-            data.format.classes.size(), " classes) does not fit the model (", model.format().dof(), ", ",
-            model.format().frames, ", ", model.format().classes.size(), ")");
-    require(options.iterations < (std::size_t{1} << 24), options.iterations,
-            " iterations are more than the random numbers' counter holds (2^24 steps)");
+    model.baseline();  // throws for the attention model
+    detail::require_same_format(data.format, model.format());
   }
 
-  ActionGan& model() { return model_; }
-  const BaselineTrainOptions& options() const { return options_; }
-  std::size_t iteration() const { return iteration_; }
-  void set_iteration(std::size_t iteration) { iteration_ = iteration; }
-  std::vector<TrainedPart> parts() { return {{"generator", named_parameters(model_), &adam_}}; }
+  std::vector<TrainedPart> parts() override {
+    return {{"generator", named_parameters(model_), &adam_}};
+  }
 
   /// One update.
-  void iterate() {
+  void iterate() override {
     const ActionBatch batch =
         windows_.draw(options_.seed, static_cast<std::uint32_t>(iteration_), options_.batch);
-    const Var made = model_.make(Var::constant(batch.prior), Var::constant(batch.classes));
+    const Var made = model_.forward(Var::constant(batch.prior), Var::constant(batch.classes));
     const Var loss = mean(square(made - Var::constant(batch.future)));
     adam_.step(grad(loss, adam_.parameters()));
     loss_ = loss.detach();
     ++iteration_;
   }
 
-  BaselineLosses losses() const {
+  BaselineLosses losses() const override {
     require(!loss_.empty(), "no iteration has run yet");
     return {loss_.item()};
   }
 
  private:
-  ActionGan& model_;
-  BaselineTrainOptions options_;
   ActionSampler windows_;
   Adam adam_;
   Var loss_;
-  std::size_t iteration_ = 0;
 };
+
+/// Trains the LSTM baseline from start to end, see run_training().
+inline RunResult train_baseline(ActionGan& model, const motion::ActionDataset& data,
+                                const BaselineTrainOptions& options, const RunOptions& run = {}) {
+  BaselineTrainer trainer(model, data, options);
+  return run_training(trainer, [&](const std::filesystem::path& path) { data.write_split(path); }, run);
+}
 
 }  // namespace motiongan

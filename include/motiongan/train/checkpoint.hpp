@@ -3,11 +3,9 @@
 #include <charconv>
 #include <list>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 
-#include "motiongan/nn/state_dict.hpp"
-#include "motiongan/optim/adam.hpp"
+#include "motiongan/train/trainer.hpp"
 
 namespace motiongan {
 
@@ -59,23 +57,12 @@ inline RunRecord read_run_record(const std::filesystem::path& checkpoint) {
   return read_run_record(io::SafeTensors::read(checkpoint), checkpoint.string());
 }
 
-/// A loss and its name, as they stand in a log.
-using LossColumn = std::pair<const char*, double>;
-
-/// One network of a training run with the optimiser that moves it.
-struct TrainedPart {
-  std::string name;  ///< what its tensors are called by in a checkpoint
-  std::vector<NamedParameter> parameters;
-  Optimizer* optimizer = nullptr;
-};
-
-/// Writes the run's state: all networks, all optimisers, the position. Random numbers have no state: they are
-/// named by seed and step. The file is written beside and renamed, so a run killed at any moment leaves the
-/// last whole one. A trainer has model(), parts(), options() (with a to_json) and iteration().
-template <class Trainer>
-void save_checkpoint(Trainer& trainer, const std::filesystem::path& path, const RunNotes& notes = {}) {
+/// Writes the run's state: all networks, all optimizers, the position. Random numbers have no state: they are
+/// named by seed and step. The file is written next to `path` and renamed, so a run killed at any moment leaves
+/// the last whole one.
+inline void save_checkpoint(Trainer& trainer, const std::filesystem::path& path, const RunNotes& notes = {}) {
   io::SafeTensors file;
-  trainer.model().describe(file);
+  trainer.describe(file);
   for (const TrainedPart& part : trainer.parts()) {
     io::save_parameters(part.parameters, file, part.name + ".");
     const std::string prefix = concat(part.optimizer->name(), ".", part.name, ".");
@@ -83,36 +70,17 @@ void save_checkpoint(Trainer& trainer, const std::filesystem::path& path, const 
       file.tensors[prefix + name] = detail::host_copy(tensor);
     file.metadata[prefix + "steps"] = std::to_string(part.optimizer->steps());
   }
-  file.metadata["training"] = to_json(trainer.options()).dump();
   file.metadata["iteration"] = std::to_string(trainer.iteration());
   for (const auto& [key, value] : notes) file.metadata["note." + key] = value;
   file.write(path);
 }
 
 /// Continues where save_checkpoint() left off, bit for bit as if the run had never stopped. The trainer must
-/// have been made with the same options and data; an Error says what differs, and leaves the trainer as it
-/// was.
-template <class Trainer>
-void load_checkpoint(Trainer& trainer, const std::filesystem::path& path) {
+/// have been made with the same options and data: Error says what differs, and leaves the trainer as it was.
+inline void load_checkpoint(Trainer& trainer, const std::filesystem::path& path) {
   const std::string where = path.string();
   const io::SafeTensors file = io::SafeTensors::read(path);
-  const auto text = [&](const char* key) -> const std::string& {
-    return detail::checkpoint_text(file, key, where);
-  };
-  io::SafeTensors expected;
-  trainer.model().describe(expected);
-  for (const char* key : {"motiongan_model", "options", "format"})
-    require(text(key) == expected.metadata.at(key), where,
-            ": the run was started with other data or another model (\"", key,
-            "\" differs); give the options of ", "the first start, or another folder for a new run");
-  // An option that is younger than the run had its default then.
-  auto before = to_json(std::decay_t<decltype(trainer.options())>{});
-  const auto then = nlohmann::json::parse(text("training"), nullptr, false), now = to_json(trainer.options());
-  require(then.is_object(), where, ": the training options cannot be read");
-  before.update(then);
-  for (const auto& [key, value] : now.items())
-    require(before.at(key) == value, where, ": the run was started with ", key, " = ", before.at(key).dump(),
-            ", now ", value.dump(), " is asked; give the same, or another folder for a new run");
+  trainer.require_same_run(file, where);
   const std::size_t iteration = detail::checkpoint_number(file, "iteration", where);
   // All tensors in one list: when one of them is wrong, nothing has changed.
   const std::vector<TrainedPart> parts = trainer.parts();

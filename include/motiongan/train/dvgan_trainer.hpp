@@ -1,14 +1,15 @@
-// Training DVGAN (SPEC 4): critic steps and generator steps, nothing read back between them.
+// Training DVGAN: critic steps and generator steps, nothing read back between them.
 #pragma once
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/networks/dvgan_critic.hpp"
-#include "motiongan/train/checkpoint.hpp"
+#include "motiongan/optim/adam.hpp"
+#include "motiongan/train/run.hpp"
 #include "motiongan/train/wgan_gp.hpp"
 #include "motiongan/train/windows.hpp"
 
 namespace motiongan {
 
-/// Every number of SPEC 4 and the critic's options of SPEC 3; the defaults are the paper's.
+/// The defaults are the paper's (Lin & Amer, section 4).
 struct DvganTrainOptions {
   std::size_t iterations = 20'000;  ///< each is `critic_steps` critic steps and one generator step
   std::size_t critic_steps = 10;
@@ -17,50 +18,60 @@ struct DvganTrainOptions {
   AdamOptions adam{};       ///< of both networks
   bool input_shift = true;  ///< move each real/fake pair by up to N/2 frames at the critic's input
   DvganCriticOptions critic{};
-  /// Share of the steps whose fakes are completions: they begin with 1 to N/2 frames of the real motion (one
+  /// Fraction of the steps whose fakes are completions: they begin with 1 to N/2 frames of the real motion (one
   /// number for the batch). The paper has none; a generator that completed in training completes better.
   /// Needs an RNN generator.
   double completion_share = 0;
   std::uint64_t seed = 1;
+
+  /// Steps of an iteration that have random numbers of their own.
+  std::size_t steps() const { return critic_steps + 1; }
+
+  void list_fields(FieldList& list) {
+    list.add(iterations, {.key = "iterations",
+                          .help = "how long to train",
+                          .range = Range::at_least(1),
+                          .saved = false});
+    list.add(critic_steps,
+             {.key = "critic_steps", .help = "critic steps in each iteration", .range = Range::at_least(1)});
+    list.add(batch, {.key = "batch", .help = "motions in a step", .range = Range::at_least(1)});
+    list.add(lambda_gp, {.key = "lambda_gp",
+                         .help = "weight of the gradient penalty",
+                         .range = Range::at_least(0),
+                         .option = "--lambda"});
+    adam.list_fields(list);
+    list.add(input_shift, {.key = "input_shift",
+                           .help = "shift motions in time at the critic's input",
+                           .option = "--shift"});
+    critic.list_fields(list);
+    list.add(completion_share,
+             {.key = "completion_share",
+              .help = "fraction of the steps in which the RNN generator completes real first frames; the "
+                      "paper: 0",
+              .range = Range::between(0, 1),
+              .option = "--completions",
+              .type = "FRACTION"});
+    list.add(seed, {.key = "seed", .help = "of the initial weights, batches and noise"});
+  }
 };
 
-/// What a checkpoint keeps of them: all but `iterations`, which a resumed run may have more of.
-inline nlohmann::json to_json(const DvganTrainOptions& o) {
-  return {{"critic_steps", o.critic_steps},
-          {"batch", o.batch},
-          {"lambda_gp", o.lambda_gp},
-          {"learning_rate", o.adam.learning_rate},
-          {"beta1", o.adam.beta1},
-          {"beta2", o.adam.beta2},
-          {"epsilon", o.adam.epsilon},
-          {"input_shift", o.input_shift},
-          {"critic", static_cast<int>(o.critic.critic)},
-          {"validation", static_cast<int>(o.critic.validation)},
-          {"level_weights", static_cast<int>(o.critic.level_weights)},
-          {"diff_input", static_cast<int>(o.critic.diff_input)},
-          {"completion_share", o.completion_share},
-          {"seed", o.seed}};
-}
-
-/// What the last iteration came to; reading it waits for the device.
+/// Losses of the last iteration.
 struct DvganLosses {
   double wasserstein = 0;  ///< mean D(real) - mean D(fake) of the last critic step
   double penalty = 0;      ///< mean (|gradient| - 1)^2
   double generator = 0;    ///< -mean D(fake) of the generator's step
+
+  /// The columns of the log.
+  std::vector<NamedLoss> named() const {
+    return {{"wasserstein", wasserstein}, {"penalty", penalty}, {"generator_loss", generator}};
+  }
 };
 
-/// As they stand in the log.
-inline std::vector<LossColumn> columns(const DvganLosses& losses) {
-  return {
-      {"wasserstein", losses.wasserstein}, {"penalty", losses.penalty}, {"generator_loss", losses.generator}};
-}
-
 /// Trains a Dvgan on a data set. One critic step and one generator step are also callable by themselves.
-class DvganTrainer {
+class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> {
  public:
   DvganTrainer(Dvgan& model, const motion::Dataset& data, const DvganTrainOptions& options)
-      : model_(model),
-        options_(options),
+      : ModelTrainer(model, options),
         windows_(model.context(), data),
         critic_(Initializer(model.context(), model.options().seed + 1),
                 {.vocabulary = model.format().vocabulary.size(),
@@ -71,35 +82,21 @@ class DvganTrainer {
                 options.critic),
         generator_adam_(named_parameters(model), options.adam),
         critic_adam_(named_parameters(critic_), options.adam) {
-    require(options.batch > 0 && options.critic_steps > 0, "batch and critic_steps must be positive");
-    require(data.format.dof() == model.format().dof() && data.format.frames == model.format().frames &&
-                data.format.vocabulary.size() == model.format().vocabulary.size(),
-            "the data set (", data.format.dof(), " dof, ", data.format.frames, " frames, ",
-            data.format.vocabulary.size(), " words) does not fit the model (", model.format().dof(), ", ",
-            model.format().frames, ", ", model.format().vocabulary.size(), ")");
-    require(options.completion_share >= 0 && options.completion_share <= 1, "a completion_share of ",
-            options.completion_share, ", expected 0 to 1");
-    if (options.completion_share > 0) model.rnn();  // refuses a CNN
-    require((options.iterations + 1) * (options.critic_steps + 1) < (std::size_t{1} << 24),
-            options.iterations, " iterations of ", options.critic_steps,
-            " critic steps are more than the random numbers' counter holds (2^24 steps)");
+    detail::require_same_format(data.format, model.format());
+    if (options.completion_share > 0) model.rnn();  // throws for a CNN
   }
 
-  Dvgan& model() { return model_; }
   DvganCritic& critic() { return critic_; }
-  const DvganTrainOptions& options() const { return options_; }
-  std::size_t iteration() const { return iteration_; }
-  void set_iteration(std::size_t iteration) { iteration_ = iteration; }
   Adam& generator_adam() { return generator_adam_; }
   Adam& critic_adam() { return critic_adam_; }
-  std::vector<TrainedPart> parts() {
+  std::vector<TrainedPart> parts() override {
     return {{"generator", named_parameters(model_), &generator_adam_},
             {"critic", named_parameters(critic_), &critic_adam_}};
   }
 
   /// critic_steps critic steps and a generator step.
-  void iterate() {
-    const std::size_t first = iteration_ * (options_.critic_steps + 1);
+  void iterate() override {
+    const std::size_t first = iteration_ * options_.steps();
     for (std::size_t i = 0; i < options_.critic_steps; ++i)
       critic_step(static_cast<std::uint32_t>(first + i));
     generator_step(static_cast<std::uint32_t>(first + options_.critic_steps));
@@ -143,7 +140,7 @@ class DvganTrainer {
     generator_loss_ = loss.detach();
   }
 
-  DvganLosses losses() const {
+  DvganLosses losses() const override {
     require(!generator_loss_.empty(), "no iteration has run yet");
     return {critic_loss_.wasserstein.item(), critic_loss_.penalty.item(), generator_loss_.item()};
   }
@@ -153,7 +150,7 @@ class DvganTrainer {
   Var make_fake(const CaptionedBatch& batch, const RandomKey& key) const {
     const RandomKey draw = key.with(RandomStream::seeding);
     const double chance = (static_cast<double>(random_word(draw, 0)) + 0.5) * 0x1p-32;
-    if (!(chance < options_.completion_share)) return model_.make(batch.text, key);
+    if (!(chance < options_.completion_share)) return model_.forward(batch.text, key);
     const std::size_t given =
         1 + random_below(draw, 0, std::max<std::size_t>(1, model_.format().frames / 2), 1);
     return model_.complete(batch.text, slice(Var::constant(batch.motion), 0, 0, given), key);
@@ -170,14 +167,18 @@ class DvganTrainer {
     return shift.empty() ? motion : shift_frames(motion, shift, motion.dim(0), {.sign = -1});
   }
 
-  Dvgan& model_;
-  DvganTrainOptions options_;
   WindowSampler windows_;
   DvganCritic critic_;
   Adam generator_adam_, critic_adam_;
   CriticLoss critic_loss_;
   Var generator_loss_;
-  std::size_t iteration_ = 0;
 };
+
+/// Trains a Dvgan from start to end, see run_training().
+inline RunResult train(Dvgan& model, const motion::Dataset& data, const DvganTrainOptions& options,
+                       const RunOptions& run = {}) {
+  DvganTrainer trainer(model, data, options);
+  return run_training(trainer, [&](const std::filesystem::path& path) { data.write_split(path); }, run);
+}
 
 }  // namespace motiongan

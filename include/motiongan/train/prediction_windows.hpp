@@ -7,6 +7,7 @@
 #include "motiongan/core/random.hpp"
 #include "motiongan/io/atomic_file.hpp"
 #include "motiongan/ops/cross_entropy.hpp"
+#include "motiongan/train/clip_buffer.hpp"
 
 namespace motiongan {
 
@@ -60,23 +61,17 @@ class PredictionSampler {
   PredictionSampler(const Context& context, const PredictionData& data, std::size_t frames)
       : context_(context), frames_(frames), action_count_(data.action_count) {
     data.check();
-    std::size_t rows = 0, longest = 0;
+    std::size_t longest = 0;
+    std::vector<std::span<const float>> poses;
     for (std::size_t s = 0; s < data.sequences.size(); ++s) {
       longest = std::max(longest, data.frames(s));
       if (data.frames(s) < frames) continue;
-      sequences_.push_back({rows, data.frames(s) - frames + 1, data.actions[s]});
-      rows += data.frames(s);
+      sequences_.push_back({data.frames(s) - frames + 1, data.actions[s]});
+      poses.emplace_back(data.sequences[s]);
     }
     require(!sequences_.empty(), "no sequence has ", frames, " frames (the longest has ", longest,
             "): prefix and future together must fit");
-    poses_ = Tensor(context, {rows, data.dof});
-    std::size_t at = 0;
-    for (std::size_t s = 0; s < data.sequences.size(); ++s) {
-      if (data.frames(s) < frames) continue;
-      poses_.view(at, {data.frames(s), data.dof}).write(std::span<const float>(data.sequences[s]));
-      at += data.sequences[s].size();
-    }
-    relative_ = Indices(context, std::vector<cl_int>(data.dof, 0));
+    buffer_ = ClipBuffer(context, data.dof, poses);
   }
 
   /// `size` windows: the sequence uniform, then its start.
@@ -85,29 +80,23 @@ class PredictionSampler {
     std::vector<cl_int> rows;
     std::vector<std::size_t> actions;
     for (std::uint32_t b = 0; b < size; ++b) {
-      const Sequence& sequence = sequences_[random_below(key, b, sequences_.size())];
-      rows.push_back(static_cast<cl_int>(sequence.first_row + random_below(key, b, sequence.starts, 1)));
+      const std::size_t index = random_below(key, b, sequences_.size());
+      const Sequence& sequence = sequences_[index];
+      rows.push_back(buffer_.row(index, random_below(key, b, sequence.starts, 1)));
       actions.push_back(sequence.action);
     }
-    const std::size_t dof = poses_.dim(1);
-    PredictionBatch batch;
-    batch.windows = Tensor(context_, {frames_, size, dof});
-    context_.launch("layout", "gather_windows", LaunchGrid::items(frames_ * size), poses_, Indices(context_, rows),
-                    relative_, batch.windows, frames_, size, dof, std::size_t{1}, dof, dof, dof, KernelReal{0});
-    batch.actions = one_hot(context_, actions, action_count_);
-    return batch;
+    return {buffer_.gather(rows, frames_), one_hot(context_, actions, action_count_)};
   }
 
  private:
   struct Sequence {
-    std::size_t first_row, starts, action;
+    std::size_t starts, action;
   };
 
   Context context_;
   std::size_t frames_, action_count_;
   std::vector<Sequence> sequences_;
-  Tensor poses_;      // [all frames, dof]
-  Indices relative_;  // none is
+  ClipBuffer buffer_;
 };
 
 }  // namespace motiongan

@@ -1,11 +1,11 @@
-// Training a ranker (Lin & Amer, section 4.1; SPEC 7): of K descriptions, the right one for a motion.
+// Training a ranker (Lin & Amer, section 4.1): of K descriptions, the right one for a motion.
 #pragma once
 #include <set>
 
 #include "motiongan/models/ranker.hpp"
 #include "motiongan/data/descriptions.hpp"
 #include "motiongan/ops/cross_entropy.hpp"
-#include "motiongan/train/checkpoint.hpp"
+#include "motiongan/optim/adam.hpp"
 #include "motiongan/train/run.hpp"
 #include "motiongan/train/windows.hpp"
 
@@ -17,58 +17,50 @@ struct RankerTrainOptions {
   std::size_t descriptions = 250;  ///< K of a step: those of its clips, and others drawn
   AdamOptions adam{.learning_rate = 1e-4, .beta1 = 0.9, .beta2 = 0.999};
   std::uint64_t seed = 1;
+
+  std::size_t steps() const { return 1; }
+
+  void list_fields(FieldList& list) {
+    list.add(iterations, {.key = "iterations",
+                          .help = "how long to train",
+                          .range = Range::at_least(1),
+                          .saved = false});
+    list.add(batch, {.key = "batch", .help = "motions in a step", .range = Range::at_least(1)});
+    list.add(descriptions, {.key = "descriptions",
+                            .help = "largest number of descriptions to choose among in a step",
+                            .range = Range::at_least(2)});
+    adam.list_fields(list);
+    list.add(seed, {.key = "seed", .help = "of the initial weights and batches"});
+  }
 };
 
-/// What a checkpoint keeps of them: all but `iterations`, which a resumed run may have more of.
-inline nlohmann::json to_json(const RankerTrainOptions& o) {
-  return {{"batch", o.batch},      {"descriptions", o.descriptions}, {"learning_rate", o.adam.learning_rate},
-          {"beta1", o.adam.beta1}, {"beta2", o.adam.beta2},          {"epsilon", o.adam.epsilon},
-          {"seed", o.seed}};
-}
-
-/// What the last iteration came to; reading it waits for the device.
+/// Losses of the last iteration.
 struct RankerLosses {
   double loss = 0;     ///< mean -log p(right description), nats
-  double recall1 = 0;  ///< share of the batch whose best description is right
+  double recall1 = 0;  ///< fraction of the batch whose best description is right
+
+  /// The columns of the log.
+  std::vector<NamedLoss> named() const { return {{"loss", loss}, {"recall1", recall1}}; }
 };
 
-/// As they stand in the log.
-inline std::vector<LossColumn> columns(const RankerLosses& losses) {
-  return {{"loss", losses.loss}, {"recall1", losses.recall1}};
-}
-
-/// Trains a Ranker on the training clips of a data set. A window of a clip with several descriptions has them
-/// all for right answers, in equal parts.
-class RankerTrainer {
+/// Trains a Ranker on the training clips of a data set. For a window of a clip with several descriptions, all
+/// of them are right, in equal parts.
+class RankerTrainer : public ModelTrainer<Ranker, RankerTrainOptions, RankerLosses> {
  public:
   RankerTrainer(Ranker& model, const motion::Dataset& data, const RankerTrainOptions& options)
-      : model_(model),
-        options_(options),
+      : ModelTrainer(model, options),
         windows_(model.context(), data),
         descriptions_(motion::distinct_descriptions(data.train)),
         adam_(named_parameters(model), options.adam) {
-    require(options.batch > 0, "batch must be positive");
     require(descriptions_.size() >= 2, "all ", data.train.size(),
             " training clips have the same description; a ranker needs at least two to choose from");
-    require(options.descriptions >= 2, options.descriptions,
-            " descriptions to choose from were asked for, expected at least 2");
-    require(data.format.dof() == model.format().dof() && data.format.frames == model.format().frames &&
-                data.format.vocabulary.size() == model.format().vocabulary.size(),
-            "the data set (", data.format.dof(), " dof, ", data.format.frames, " frames, ",
-            data.format.vocabulary.size(), " words) does not fit the ranker (", model.format().dof(), ", ",
-            model.format().frames, ", ", model.format().vocabulary.size(), ")");
-    require(options.iterations < (std::size_t{1} << 24), options.iterations,
-            " iterations are more than the random numbers' counter holds (2^24 steps)");
+    detail::require_same_format(data.format, model.format());
     for (const std::string& text : descriptions_.texts)
       sentences_.push_back(data.format.vocabulary.encode(text));
   }
 
-  Ranker& model() { return model_; }
-  const RankerTrainOptions& options() const { return options_; }
   const motion::Descriptions& descriptions() const { return descriptions_; }
-  std::size_t iteration() const { return iteration_; }
-  void set_iteration(std::size_t iteration) { iteration_ = iteration; }
-  std::vector<TrainedPart> parts() { return {{"ranker", named_parameters(model_), &adam_}}; }
+  std::vector<TrainedPart> parts() override { return {{"ranker", named_parameters(model_), &adam_}}; }
 
   /// The descriptions that step `step` chooses among: all that the clips have, and others by chance until
   /// there are K; in increasing order.
@@ -88,7 +80,7 @@ class RankerTrainer {
   }
 
   /// One update.
-  void iterate() {
+  void iterate() override {
     const auto step = static_cast<std::uint32_t>(iteration_);
     const CaptionedBatch batch = windows_.draw(options_.seed, step, options_.batch);
     const std::vector<std::size_t> asked = candidates(batch.clips, step);
@@ -112,7 +104,7 @@ class RankerTrainer {
     ++iteration_;
   }
 
-  RankerLosses losses() const {
+  RankerLosses losses() const override {
     require(!loss_.empty(), "no iteration has run yet");
     const std::vector<float> scores = scores_.value().to_host();
     const std::size_t count = scores_.dim(1);
@@ -126,26 +118,19 @@ class RankerTrainer {
   }
 
  private:
-  Ranker& model_;
-  RankerTrainOptions options_;
   WindowSampler windows_;
   motion::Descriptions descriptions_;
   std::vector<std::vector<int>> sentences_;
   Adam adam_;
   Var loss_, scores_;
   std::vector<float> right_;  // of the last step, [B, K]
-  std::size_t iteration_ = 0;
 };
 
-using RankerRunOptions = BasicRunOptions<RankerLosses>;
-
-/// Trains until options.iterations are done, time is up or should_stop() says so; then saves, the ranker as
-/// `ranker.safetensors`. Columns of the log: iteration, seconds (of this run), iterations_per_second, loss,
-/// recall1.
+/// Trains a ranker from start to end, see run_training(); it is saved as `ranker.safetensors`.
 inline RunResult train(Ranker& model, const motion::Dataset& data, const RankerTrainOptions& options,
-                       const RankerRunOptions& run = {}) {
+                       const RunOptions& run = {}) {
   RankerTrainer trainer(model, data, options);
-  return detail::run_training(trainer, data, options.iterations, run);
+  return run_training(trainer, [&](const std::filesystem::path& path) { data.write_split(path); }, run);
 }
 
 }  // namespace motiongan

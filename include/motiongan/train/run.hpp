@@ -3,26 +3,50 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <memory>
 
 #include "motiongan/train/checkpoint.hpp"
 #include "motiongan/train/csv_log.hpp"
 
 namespace motiongan {
 
-/// How a run is kept and watched; none of it changes what is computed. `Losses` is what the trainer reports.
-template <class Losses>
-struct BasicRunOptions {
-  std::filesystem::path
-      save_dir{};       ///< folder for generator, checkpoint, log and split; empty: nothing is written
-  bool resume = false;  ///< continue the run in save_dir
-  double save_every_minutes = 5;  ///< a checkpoint is also written at the end, and when the run is stopped
-  std::size_t log_every = 1;      ///< iterations between two rows of the log; each row waits for the device
-  double max_minutes = 0;         ///< stop after that long; 0: no limit
+/// Called after every iteration; returns true to stop the run.
+using RunCallback = std::function<bool(const Trainer& trainer)>;
+
+/// How a run is kept and watched; none of it changes what is computed.
+struct RunOptions {
+  std::filesystem::path save_dir{};  ///< folder of model, checkpoint, log and split; empty: nothing is written
+  bool resume = false;               ///< continue the run in save_dir
+  double save_every_minutes = 5;     ///< a checkpoint is also written at the end, and when the run is stopped
+  std::size_t log_every = 1;         ///< iterations between two rows of the log; each row waits for the device
+  double max_minutes = 0;            ///< stop after that long; 0: no limit
   std::function<bool()> should_stop = {};  ///< asked after every iteration
-  std::function<void(std::size_t iteration, const Losses&)> report =
-      {};            ///< called with every row of the log
-  RunNotes notes{};  ///< kept in the checkpoint, where read_run_record() finds them
+  /// Called with every row of the log.
+  std::function<void(std::size_t iteration, std::span<const NamedLoss> losses)> report = {};
+  std::vector<RunCallback> callbacks = {};  ///< called in their order, before a periodic checkpoint
+  RunNotes notes{};                         ///< kept in the checkpoint, where read_run_record() finds them
+
+  void list_fields(FieldList& list) {
+    list.add(max_minutes, {.key = "max_minutes",
+                           .help = "stop (and save) after that long; 0: no limit",
+                           .range = Range::at_least(0),
+                           .option = "--minutes"});
+    list.add(save_every_minutes, {.key = "save_every_minutes",
+                                  .help = "minutes between two checkpoints; 0: only at the end",
+                                  .range = Range::at_least(0),
+                                  .option = "--save-every"});
+    list.add(log_every, {.key = "log_every",
+                         .help = "iterations between two rows of log.csv",
+                         .range = Range::at_least(1)});
+  }
 };
+
+/// The value of a loss among those of a row; NaN if there is none of that name.
+inline double loss_of(std::span<const NamedLoss> losses, std::string_view name) {
+  for (const NamedLoss& loss : losses)
+    if (name == loss.name) return loss.value;
+  return std::numeric_limits<double>::quiet_NaN();
+}
 
 /// What a save_dir holds. A run has those of the networks that it trains.
 struct RunFiles {
@@ -31,7 +55,7 @@ struct RunFiles {
   std::filesystem::path critic() const { return network("critic"); }
   std::filesystem::path checkpoint() const { return folder / "checkpoint.safetensors"; }
   std::filesystem::path log() const { return folder / "log.csv"; }
-  /// What a run logged that was killed before its first checkpoint, once another one begins in its place.
+  /// The log of a run that was killed before its first checkpoint, after another one has begun in its place.
   std::filesystem::path unsaved_log() const { return folder / "log.unsaved.csv"; }
   std::filesystem::path split() const { return folder / "split.tsv"; }
   std::filesystem::path network(const std::string& name) const { return folder / (name + ".safetensors"); }
@@ -39,23 +63,73 @@ struct RunFiles {
 
 /// How a run ended.
 struct RunResult {
-  std::size_t iterations = 0;  ///< done in all, earlier runs counted in
+  std::size_t iterations = 0;  ///< done in all, earlier starts included
   bool stopped = false;        ///< before all were done
 };
 
 namespace detail {
 
-/// Trains until `iterations` are done, time is up or should_stop() says so; then saves. A trainer is what
-/// save_checkpoint() takes, with iterate(), losses() and, for its Losses, columns(losses).
-/// Columns of the log: iteration, seconds (of this run), iterations_per_second, then those of the losses.
-template <class Trainer, class Data, class Losses>
-RunResult run_training(Trainer& trainer, const Data& data, std::size_t iterations,
-                       const BasicRunOptions<Losses>& run) {
-  using Clock = std::chrono::steady_clock;
+using RunClock = std::chrono::steady_clock;
+
+inline double seconds_since(RunClock::time_point then) {
+  return std::chrono::duration<double>(RunClock::now() - then).count();
+}
+
+/// Stops the run `minutes` from now.
+inline RunCallback time_limit(double minutes) {
+  return [minutes, start = RunClock::now()](const Trainer&) { return seconds_since(start) >= minutes * 60; };
+}
+
+/// Writes a row of the log, if there is one, and reports it, every `every` iterations and after the last.
+/// Throws DivergedError for a loss that is no finite number.
+inline RunCallback log_rows(std::shared_ptr<CsvLog> log, std::size_t every, decltype(RunOptions::report) report) {
+  return [=, start = RunClock::now(), last_row = 0.0, rows_since = std::size_t{0}](
+             const Trainer& trainer) mutable {
+    ++rows_since;
+    const std::size_t iteration = trainer.iteration();
+    if (iteration % every != 0 && iteration != trainer.iterations()) return false;
+    const std::vector<NamedLoss> losses = trainer.named_losses();
+    const double now = seconds_since(start);
+    std::vector<double> row{now, static_cast<double>(rows_since) / std::max(now - last_row, 1e-9)};
+    last_row = now;
+    rows_since = 0;
+    for (const auto& [name, value] : losses) {
+      if (!std::isfinite(value))
+        throw DivergedError("training diverged at iteration ", iteration, " (", name, " is ", value,
+                            "); the last checkpoint is kept; try a lower learning rate");
+      row.push_back(value);
+    }
+    if (log) log->append(iteration, row);
+    if (report) report(iteration, losses);
+    return false;
+  };
+}
+
+/// The checkpoint and one file for each network.
+inline void save_run(Trainer& trainer, const RunFiles& files, const RunNotes& notes) {
+  save_checkpoint(trainer, files.checkpoint(), notes);
+  const std::vector<TrainedPart> parts = trainer.parts();
+  trainer.save_model(files.network(parts.front().name));
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    io::SafeTensors file;
+    io::save_parameters(parts[i].parameters, file);
+    file.write(files.network(parts[i].name));
+  }
+}
+
+}  // namespace detail
+
+/// Trains until all iterations are done, time is up, or should_stop() or a callback says so; then saves.
+/// `write_split(path)` writes which clips are for training and which for testing. Columns of the log:
+/// iteration, seconds (of this start), iterations_per_second, and the trainer's losses. Throws DivergedError
+/// for losses that are no longer finite; the last checkpoint is kept.
+inline RunResult run_training(Trainer& trainer,
+                              const std::function<void(const std::filesystem::path&)>& write_split,
+                              const RunOptions& run) {
   const RunFiles files{run.save_dir};
   const bool keeps = !run.save_dir.empty();
-  require(run.log_every > 0, "log_every is 0; give the number of iterations between two rows of the log");
-  std::optional<CsvLog> log;
+  check_options(run);
+  std::shared_ptr<CsvLog> log;
   if (keeps) {
     std::filesystem::create_directories(run.save_dir);
     if (run.resume)
@@ -66,64 +140,34 @@ RunResult run_training(Trainer& trainer, const Data& data, std::size_t iteration
     // A log without a checkpoint is of a run that was killed before it saved anything.
     if (!run.resume && std::filesystem::exists(files.log()))
       std::filesystem::rename(files.log(), files.unsaved_log());
-    data.write_split(files.split());
+    write_split(files.split());
     std::vector<std::string> names{"seconds", "iterations_per_second"};
-    for (const LossColumn& column : columns(Losses{})) names.emplace_back(column.first);
-    log.emplace(files.log(), names,
-                run.resume ? std::optional<std::uint64_t>(trainer.iteration()) : std::nullopt);
+    for (const std::string& name : trainer.loss_names()) names.push_back(name);
+    log = std::make_shared<CsvLog>(files.log(), names,
+                                   run.resume ? std::optional<std::uint64_t>(trainer.iteration())
+                                              : std::nullopt);
   }
-  const auto save = [&] {
-    if (!keeps) return;
-    save_checkpoint(trainer, files.checkpoint(), run.notes);
-    const std::vector<TrainedPart> parts = trainer.parts();  // of which the first is the model
-    trainer.model().save(files.network(parts.front().name));
-    for (const TrainedPart& part : parts) {
-      if (part.name == parts.front().name) continue;
-      io::SafeTensors file;
-      io::save_parameters(part.parameters, file);
-      file.write(files.network(part.name));
-    }
-  };
-  const auto seconds_since = [](Clock::time_point then) {
-    return std::chrono::duration<double>(Clock::now() - then).count();
-  };
-  const Clock::time_point start = Clock::now();
-  Clock::time_point saved = start;
-  double last_row = 0;
-  std::size_t rows_since = 0;
+  std::vector<RunCallback> callbacks{detail::log_rows(log, run.log_every, run.report)};
+  if (run.max_minutes > 0) callbacks.push_back(detail::time_limit(run.max_minutes));
+  if (run.should_stop) callbacks.push_back([&](const Trainer&) { return run.should_stop(); });
+  callbacks.insert(callbacks.end(), run.callbacks.begin(), run.callbacks.end());
+
+  auto saved = detail::RunClock::now();
   RunResult result;
-  while (trainer.iteration() < iterations) {
+  while (trainer.iteration() < trainer.iterations() && !result.stopped) {
     trainer.iterate();
-    ++rows_since;
-    if (trainer.iteration() % run.log_every == 0 || trainer.iteration() == iterations) {
-      const Losses losses = trainer.losses();
-      const double now = seconds_since(start);
-      std::vector<double> row{now, static_cast<double>(rows_since) / std::max(now - last_row, 1e-9)};
-      last_row = now;
-      rows_since = 0;
-      for (const auto& [name, value] : columns(losses)) {
-        if (!std::isfinite(value))
-          throw Error("training diverged at iteration ", trainer.iteration(), " (", name, " is ", value,
-                      "); the last checkpoint is kept; try a lower learning rate");
-        row.push_back(value);
-      }
-      if (log) log->append(trainer.iteration(), row);
-      if (run.report) run.report(trainer.iteration(), losses);
-    }
-    const bool out_of_time = run.max_minutes > 0 && seconds_since(start) >= run.max_minutes * 60;
-    if (out_of_time || (run.should_stop && run.should_stop())) {
-      result.stopped = trainer.iteration() < iterations;
-      break;
-    }
-    if (run.save_every_minutes > 0 && seconds_since(saved) >= run.save_every_minutes * 60) {
-      save();
-      saved = Clock::now();
+    for (const RunCallback& callback : callbacks) result.stopped |= callback(trainer);
+    if (result.stopped) break;
+    if (keeps && run.save_every_minutes > 0 &&
+        detail::seconds_since(saved) >= run.save_every_minutes * 60) {
+      detail::save_run(trainer, files, run.notes);
+      saved = detail::RunClock::now();
     }
   }
-  save();
+  if (keeps) detail::save_run(trainer, files, run.notes);
+  result.stopped = trainer.iteration() < trainer.iterations();
   result.iterations = trainer.iteration();
   return result;
 }
 
-}  // namespace detail
 }  // namespace motiongan

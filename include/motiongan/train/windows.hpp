@@ -3,6 +3,7 @@
 #include "motiongan/core/random.hpp"
 #include "motiongan/data/dataset.hpp"
 #include "motiongan/nn/text_encoder.hpp"
+#include "motiongan/train/clip_buffer.hpp"
 
 namespace motiongan {
 
@@ -23,22 +24,17 @@ class WindowSampler {
         stride_(data.stride),
         vocabulary_(data.format.vocabulary.size()) {
     require(!data.train.empty(), "the data set has no training clips");
+    std::vector<std::span<const float>> poses;
+    for (const motion::DatasetClip& clip : data.train) {
+      clips_.push_back({data.starts(clip), clip.sentences});
+      poses.emplace_back(clip.poses);
+    }
     const std::size_t dof = data.format.dof();
-    std::size_t rows = 0;
-    for (const motion::DatasetClip& clip : data.train) {
-      clips_.push_back({rows, data.starts(clip), clip.sentences});
-      rows += clip.frames;
-    }
-    poses_ = Tensor(context, {rows, dof});
-    std::size_t at = 0;
-    for (const motion::DatasetClip& clip : data.train) {
-      poses_.view(at * dof, {clip.frames, dof}).write(std::span<const float>(clip.poses));
-      at += clip.frames;
-    }
-    std::vector<cl_int> relative;
-    for (bool is_relative : data.format.relative_mask()) relative.push_back(is_relative);
-    relative_ = Indices(context, relative);
-    turning_ = data.format.turning().value_or(motion::MotionFormat::Turning{dof, dof, dof, 0});
+    WindowForm form{.x = dof, .z = dof, .yaw = dof};
+    for (const bool is_relative : data.format.relative_mask()) form.relative.push_back(is_relative);
+    if (const auto turning = data.format.turning())
+      form.x = turning->x, form.z = turning->z, form.yaw = turning->yaw, form.yaw_scale = turning->yaw_scale;
+    buffer_ = ClipBuffer(context, dof, poses, std::move(form));
   }
 
   /// `size` windows: a clip, one of its captions and a start for each sample, all uniform.
@@ -51,30 +47,23 @@ class WindowSampler {
     for (std::uint32_t b = 0; b < size; ++b) {
       drawn.push_back(random_below(windows, b, clips_.size()));
       const Clip& clip = clips_[drawn.back()];
-      rows.push_back(static_cast<cl_int>(clip.first_row + random_below(windows, b, clip.starts, 1)));
+      rows.push_back(buffer_.row(drawn.back(), random_below(windows, b, clip.starts, 1)));
       sentences.push_back(clip.sentences[random_below(captions, b, clip.sentences.size())]);
     }
-    const std::size_t dof = poses_.dim(1);
-    CaptionedBatch batch{Tensor(context_, {frames_, size, dof}), Sentences(context_, sentences, vocabulary_),
-                std::move(drawn)};
-    context_.launch("layout", "gather_windows", LaunchGrid::items(frames_ * size), poses_, Indices(context_, rows),
-                    relative_, batch.motion, frames_, size, dof, stride_, turning_.x, turning_.z,
-                    turning_.yaw, KernelReal{turning_.yaw_scale});
-    return batch;
+    return {buffer_.gather(rows, frames_, stride_), Sentences(context_, sentences, vocabulary_),
+            std::move(drawn)};
   }
 
  private:
   struct Clip {
-    std::size_t first_row, starts;
+    std::size_t starts;
     std::vector<std::vector<int>> sentences;
   };
 
   Context context_;
   std::size_t frames_, stride_, vocabulary_;
   std::vector<Clip> clips_;
-  Tensor poses_;  // [all frames, dof]
-  Indices relative_;
-  motion::MotionFormat::Turning turning_{};  // yaw = dof: windows are not turned
+  ClipBuffer buffer_;
 };
 
 }  // namespace motiongan

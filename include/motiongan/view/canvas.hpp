@@ -1,4 +1,4 @@
-// Pictures in memory and the little that is needed to draw on them: smooth lines, discs, boxes and text.
+// In-memory images and drawing primitives: antialiased lines, discs, boxes and text.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -20,7 +20,7 @@ struct Color {
   friend bool operator==(const Color&, const Color&) = default;
 };
 
-/// Colours that stay apart, also for the colour-blind; used in turn.
+/// Colours that are easy to tell apart, also with colour blindness; repeats after 8.
 inline Color palette(std::size_t i) {
   static constexpr std::array<Color, 8> colors = {{{0x1f, 0x6f, 0xb4},
                                                    {0xd5, 0x5e, 0x00},
@@ -33,7 +33,7 @@ inline Color palette(std::size_t i) {
   return colors[i % colors.size()];
 }
 
-/// `share` of b in a: 0 gives a, 1 gives b.
+/// Linear mix of two colours: `share` 0 gives a, 1 gives b.
 inline Color mix(Color a, Color b, double share) {
   const auto channel = [share](std::uint8_t x, std::uint8_t y) {
     return static_cast<std::uint8_t>(std::lround(x + (y - x) * std::clamp(share, 0.0, 1.0)));
@@ -41,15 +41,16 @@ inline Color mix(Color a, Color b, double share) {
   return {channel(a.r, b.r), channel(a.g, b.g), channel(a.b, b.b)};
 }
 
-/// A picture: three bytes a pixel, rows from the top.
+/// An RGB image, 8 bits per channel, top row first.
 struct Image {
   std::size_t width = 0, height = 0;
   std::vector<std::uint8_t> rgb;  ///< [height, width, 3]
 
   Image() = default;
+  /// A filled image. Throws Error unless both sides are 1 to 32768 pixels.
   Image(std::size_t w, std::size_t h, Color fill = {255, 255, 255}) : width(w), height(h) {
-    require(w > 0 && h > 0 && w <= 32768 && h <= 32768, "a picture of ", w, " x ", h,
-            " pixels was asked for; both sides must be between 1 and 32768");
+    require(w > 0 && h > 0 && w <= 32768 && h <= 32768, "the image size is ", w, " x ", h,
+            " pixels; both sides must be between 1 and 32768");
     rgb.resize(w * h * 3);
     for (std::size_t i = 0; i < w * h; ++i) {
       rgb[3 * i] = fill.r;
@@ -58,19 +59,20 @@ struct Image {
     }
   }
 
+  /// The pixel in column x and row y, which must be inside the image.
   Color at(std::size_t x, std::size_t y) const {
     const std::size_t i = 3 * (y * width + x);
     return {rgb[i], rgb[i + 1], rgb[i + 2]};
   }
 };
 
-/// Draws on an image. Coordinates are pixels, x to the right and y down from the top left corner; what lies
-/// outside is cut off.
+/// Draws on an image, which must outlive it. Coordinates are pixels, x to the right and y down from the top
+/// left corner; drawing is clipped to the image.
 class Canvas {
  public:
   explicit Canvas(Image& image) : image_(image) {}
 
-  /// Lays `color` over one pixel, covering the share `alpha` of it.
+  /// Blends `color` over one pixel with opacity `alpha`, 0 .. 1.
   void blend(std::ptrdiff_t x, std::ptrdiff_t y, Color color, double alpha) {
     if (x < 0 || y < 0 || x >= static_cast<std::ptrdiff_t>(image_.width) ||
         y >= static_cast<std::ptrdiff_t>(image_.height) || alpha <= 0)
@@ -82,7 +84,7 @@ class Canvas {
     image_.rgb[i + 2] = now.b;
   }
 
-  /// A line with round ends: every pixel is covered by as much of it as its distance from the line says.
+  /// An antialiased line with round ends.
   void line(double x0, double y0, double x1, double y1, double thickness, Color color, double alpha = 1) {
     if (!(std::isfinite(x0) && std::isfinite(y0) && std::isfinite(x1) && std::isfinite(y1))) return;
     const double radius = thickness / 2, margin = radius + 1;
@@ -104,7 +106,7 @@ class Canvas {
     line(x, y, x, y, 2 * radius, color, alpha);
   }
 
-  /// A filled box; its edges are rounded to whole pixels.
+  /// A filled box, with its edges rounded to whole pixels.
   void box(double x, double y, double width, double height, Color color, double alpha = 1) {
     const auto [left, right] = range(std::round(x), std::round(x + width), image_.width);
     const auto [top, bottom] = range(std::round(y), std::round(y + height), image_.height);
@@ -112,7 +114,7 @@ class Canvas {
       for (std::ptrdiff_t column = left; column < right; ++column) blend(column, row, color, alpha);
   }
 
-  /// Text with its top left corner at (x, y), in pixels of `scale` by `scale`.
+  /// Text with its top left corner at (x, y); each font pixel is `scale` by `scale` pixels.
   void text(double x, double y, std::string_view utf8, Color color, std::size_t scale = 2) {
     const double s = static_cast<double>(scale);
     double at = std::round(x);
@@ -128,7 +130,7 @@ class Canvas {
   }
 
  private:
-  /// The whole pixels from `from` to `to` that lie within 0..size.
+  /// The whole pixels between `from` and `to`, clipped to 0..size.
   static std::pair<std::ptrdiff_t, std::ptrdiff_t> range(double from, double to, std::size_t size) {
     const double end = static_cast<double>(size);
     return {static_cast<std::ptrdiff_t>(std::clamp(std::floor(from), 0.0, end)),
@@ -144,7 +146,7 @@ inline double text_width(std::string_view utf8, std::size_t scale = 2) {
   return n == 0 ? 0 : static_cast<double>((n * glyph_advance - 1) * scale);
 }
 
-/// `utf8` cut to `width` pixels, with dots where something was cut.
+/// `utf8` truncated to `width` pixels, with an ellipsis if it was truncated.
 inline std::string fitted(std::string_view utf8, double width, std::size_t scale = 2) {
   std::string text = printable(utf8);
   if (text_width(text, scale) <= width) return text;

@@ -1,5 +1,4 @@
-// What is drawn of a motion: points in space, the bones between them, and how large, how high and which way
-// round the figure stands. The player and the pose strip both draw this.
+// The stick figure that the player and the pose strip draw: points and bones, size, floor height and heading.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -16,28 +15,28 @@
 
 namespace motiongan::view {
 
-/// A motion with what a viewer writes beneath it.
+/// A motion and its caption.
 struct ViewedMotion {
   std::string title;  ///< UTF-8
   motion::Motion motion;
-  std::size_t seed_frames = 0;  ///< the first frames that were given rather than generated: drawn in grey
+  std::size_t seed_frames = 0;  ///< number of given frames at the start, drawn in grey
 };
 
 using motion::Side;
 using motion::side_of;
 
-/// A motion as points and bones. Joints that always coincide with their parent are drawn as one point.
+/// A motion as points and bones. A joint that always coincides with its parent is merged with it.
 struct Figure {
   double rate = 0;  ///< frames per second
   std::size_t frames = 0;
-  std::vector<int> parents;  ///< [nodes], the node a bone comes from; -1 for the first node, the root
-  std::vector<Side> sides;   ///< [nodes], of the bone that ends in the node
-  std::vector<char> heads;  ///< [nodes], 1 where the bone that ends in the node is the head, 2 where the head
-                            ///< sits on the node
-  std::vector<motion::Vec3> points;  ///< [frames, nodes], in the world, y up, in the file's unit
-  double height = 1;                 ///< about how tall the figure stands, in the file's unit
-  double floor = 0;                  ///< height of the ground
-  double heading = 0;                ///< angle about y by which the figure is turned from facing +z, radians
+  std::vector<int> parents;  ///< [nodes], parent node; -1 for the first node, the root
+  std::vector<Side> sides;   ///< [nodes], side of the bone that ends in the node
+  std::vector<char> heads;  ///< [nodes], 1: the bone that ends in the node is the head, 2: the head sits on
+                            ///< the node, 0: neither
+  std::vector<motion::Vec3> points;  ///< [frames, nodes], world space, y up, in the file's unit
+  double height = 1;                 ///< approximate standing height, in the file's unit
+  double floor = 0;                  ///< height of the floor, in the file's unit
+  double heading = 0;                ///< rotation about y from facing +z, radians
 
   std::size_t nodes() const { return parents.size(); }
   const motion::Vec3& point(std::size_t frame, std::size_t node) const {
@@ -47,7 +46,7 @@ struct Figure {
 
 namespace detail {
 
-/// The joint that drawing begins with: joints above it are a resting handle ("joint_Root"), not a bone.
+/// The topmost joint to draw: joints above it form a static handle ("joint_Root"), not a bone.
 inline std::size_t first_drawn_joint(const motion::Motion& m) {
   const auto below = motion::children(m.skeleton);
   const auto rests = [&](std::size_t j) {
@@ -56,13 +55,13 @@ inline std::size_t first_drawn_joint(const motion::Motion& m) {
     return !motion::has_moving_track(m, j);
   };
   std::size_t j = 0;
-  // In a single frame everything rests, so that nothing can be told.
+  // In a single frame every joint is static, which proves nothing.
   while (m.frames > 1 && below[j].size() == 1 && rests(j)) j = below[j].front();
   return below[j].empty() ? 0 : j;
 }
 
-/// About how tall a figure stands: for people the longest way from the hips to a tip (a hand, a toe) is about
-/// three quarters of it.
+/// Approximate standing height: for people, the longest path from the hips to an end effector (hand or toe)
+/// is about three quarters of it.
 inline double standing_height(const motion::Skeleton& skeleton, std::size_t first) {
   std::vector<double> reach(skeleton.size(), 0);
   double longest = 0;
@@ -75,8 +74,8 @@ inline double standing_height(const motion::Skeleton& skeleton, std::size_t firs
   return longest > 0 ? 1.3 * longest : 1;
 }
 
-/// Mean direction of the figure over its first `frames` frames, from its first left and right points that lie
-/// apart.
+/// Mean heading of the figure over its first `frames` frames, from its first left and right nodes; 0 if it
+/// has no sides.
 inline double mean_heading(const Figure& figure, std::size_t frames) {
   std::size_t left = 0, right = 0;
   for (std::size_t n = figure.nodes(); n-- > 1;) {
@@ -92,12 +91,12 @@ inline double mean_heading(const Figure& figure, std::size_t frames) {
     sine += std::sin(angle);
     cosine += std::cos(angle);
   }
-  // Who turns round and round has no mean direction: take the first.
+  // A figure that keeps turning has no mean heading: use the first frame's.
   const bool turns = std::hypot(sine, cosine) < 0.3 * static_cast<double>(frames);
   return turns ? first : std::atan2(sine, cosine);
 }
 
-/// The height of the ground: the lowest point of nearly all frames, so that one bad frame does not lift it.
+/// Height of the floor: the 5th percentile of the frames' lowest points, which is robust to a few bad frames.
 inline double ground(const Figure& figure) {
   std::vector<double> lowest(figure.frames, 0);
   for (std::size_t f = 0; f < figure.frames; ++f) {
@@ -111,8 +110,8 @@ inline double ground(const Figure& figure) {
 
 }  // namespace detail
 
-/// The points and bones of a motion. Error for a motion without frames or joints, or with a position that is
-/// not a number.
+/// The points and bones of a motion. Throws Error for a motion without frames or joints, or with a position
+/// that is not finite.
 inline Figure make_figure(const ViewedMotion& viewed) {
   const motion::Motion& m = viewed.motion;
   const std::size_t joints = m.skeleton.size();
@@ -133,9 +132,9 @@ inline Figure make_figure(const ViewedMotion& viewed) {
     return name.find("Head") != std::string_view::npos || name.find("head") != std::string_view::npos;
   };
 
-  // Which array a node's points come from: joint j, or tip number t.
+  // The source of each node's points: (false, joint) or (true, end site).
   std::vector<std::pair<bool, std::size_t>> sources;
-  std::vector<int> node_of(joints, -1);  // [joints], -1 above the first drawn one
+  std::vector<int> node_of(joints, -1);  // [joints], -1 above the first drawn joint
   for (std::size_t j = first, tip = 0; j < joints; ++j) {
     const motion::Joint& joint = m.skeleton.joints[j];
     const int parent = j == first ? -1 : node_of[static_cast<std::size_t>(joint.parent)];
@@ -168,7 +167,7 @@ inline Figure make_figure(const ViewedMotion& viewed) {
     }
   }
   out.floor = detail::ground(out);
-  // Motions that begin with the same seed are seen from the same side, whatever they do next.
+  // Motions with the same seed frames are viewed from the same side, whatever they do afterwards.
   const bool seeded = viewed.seed_frames > 0;
   out.heading = detail::mean_heading(out, seeded ? std::min(viewed.seed_frames, out.frames) : out.frames);
   return out;

@@ -1,5 +1,5 @@
-// A 5x7 bitmap font of the printable ASCII characters, drawn for this project: captions and axis numbers on
-// images need no font file and no font library.
+// A 5x7 bitmap font of the printable ASCII characters, drawn for this project, so that text on images needs
+// no font file or library.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -11,10 +11,11 @@ namespace motiongan::view {
 
 inline constexpr std::size_t glyph_width = 5;
 inline constexpr std::size_t glyph_height = 7;
-inline constexpr std::size_t line_height = 9;    ///< with the tails of g, p, q and y
-inline constexpr std::size_t glyph_advance = 6;  ///< pixels from one character to the next, at scale 1
+inline constexpr std::size_t line_height = 9;    ///< including the descenders of g, p, q and y
+inline constexpr std::size_t glyph_advance = 6;  ///< pixels from one character to the next at scale 1
 
-/// One character: 7 rows of 5 bits, the top row in the highest bits, the left pixel highest in its row.
+/// One character: 7 rows of 5 bits, top row in the highest bits, leftmost pixel in the highest bit of its
+/// row.
 using Glyph = std::uint64_t;
 
 /// Characters 32 (space) to 126 (tilde).
@@ -35,13 +36,13 @@ inline constexpr std::array<Glyph, 95> font_5x7 = {
     0x0c8441083, 0x108421084, 0x608411098, 0x0008a8800,                                         // {|}~
 };
 
-/// The glyph of `c`; a question mark for anything but printable ASCII.
+/// The glyph of `c`; a question mark if `c` is not printable ASCII.
 inline constexpr Glyph glyph(char c) {
   const auto code = static_cast<unsigned char>(c);
   return font_5x7[code >= 32 && code < 127 ? code - 32u : '?' - 32u];
 }
 
-/// Pixels by which a character hangs below the others: g, p, q and y stand on the line with their bowls.
+/// Pixels by which a character is lowered: the descenders of g, p, q and y go below the baseline.
 inline constexpr std::size_t glyph_drop(char c) {
   return c == 'g' || c == 'p' || c == 'q' || c == 'y' ? 2 : 0;
 }
@@ -51,12 +52,12 @@ inline constexpr bool glyph_pixel(Glyph g, std::size_t x, std::size_t y) {
   return (g >> ((glyph_height - 1 - y) * glyph_width + (glyph_width - 1 - x)) & 1u) != 0;
 }
 
-/// `utf8` with one question mark for each character that the font does not have.
+/// `utf8` as printable ASCII, with a question mark for each character that is not in the font.
 inline std::string printable(std::string_view utf8) {
   std::string out;
   for (const char c : utf8) {
     const auto code = static_cast<unsigned char>(c);
-    if ((code & 0xc0u) == 0x80u) continue;  // the rest of a character already answered for
+    if ((code & 0xc0u) == 0x80u) continue;  // continuation byte of a character already handled
     out += code >= 32 && code < 127 ? c : (c == '\t' || c == '\n' ? ' ' : '?');
   }
   return out;

@@ -1,4 +1,4 @@
-// Matrices as pictures: what a self-attention layer looks at.
+// Heat maps of matrices, such as attention weights.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -19,21 +19,21 @@ namespace motiongan::view {
 struct HeatMap {
   std::string title = {};
   std::size_t rows = 0, columns = 0;
-  std::vector<float> values;  ///< [rows, columns], 0 or more, such as attention weights
+  std::vector<float> values;  ///< [rows, columns], non-negative, such as attention weights
 };
 
 struct HeatMapOptions {
   std::string title = {};         ///< above all maps
-  std::string row_label = {};     ///< what rows are, such as "frame that looks"
+  std::string row_label = {};     ///< what rows are, such as "query frame"
   std::string column_label = {};  ///< what columns are
-  std::size_t cell = 0;           ///< pixels of a cell's side; 0 chooses about 360 pixels a map
-  double row_scale = 1;  ///< what a row counts for in the axis' numbers, such as 4 frames after pooling
-  double column_scale = 1;
-  double high = 0;  ///< the value of the darkest colour; 0 takes the largest value in the maps
+  std::size_t cell = 0;           ///< side of a cell in pixels; 0: about 360 pixels per map
+  double row_scale = 1;  ///< axis units per row, such as 4 frames after pooling
+  double column_scale = 1;  ///< axis units per column
+  double high = 0;  ///< value of the darkest colour; 0: the largest value in the maps
 };
 
-/// From pale yellow (0) over red to nearly black (1): its brightness falls all the way, so that it can be
-/// read in grey too.
+/// Colour map from pale yellow (0) through red to nearly black (1). Its brightness decreases monotonically,
+/// so it also reads in greyscale.
 inline Color heat_color(double share) {
   static constexpr std::array<Color, 6> stops{{{0xfd, 0xf8, 0xe4},
                                                {0xfc, 0xd0, 0x7c},
@@ -48,8 +48,8 @@ inline Color heat_color(double share) {
 
 namespace detail {
 
-/// A step for the numbers beside `count` cells that count for `scale` each, in cells: at least `room` pixels
-/// apart.
+/// Step between axis labels of `count` cells, in cells: a round number of axis units (`scale` per cell), at
+/// least `room` pixels apart.
 inline double cell_step(double count, double scale, double cell, double room) {
   const double least = std::max(scale, room / cell * scale);
   const double power = std::pow(10.0, std::floor(std::log10(least) + 1e-9));
@@ -60,11 +60,11 @@ inline double cell_step(double count, double scale, double cell, double room) {
 
 }  // namespace detail
 
-/// The maps side by side, with numbers at their sides, their titles and one colour bar for all. Grey cells
-/// hold no finite number. Error if there is no map, one has no cells or not as many values, a value is below
-/// 0, or the picture would be larger than an Image can be.
+/// Draws the maps side by side, with axis labels, titles and a shared colour bar. Cells that are not finite
+/// are grey. Throws Error if there is no map, a map has no cells or a wrong number of values, a value is
+/// negative, an option is out of range, or the image would exceed the maximum size of an Image.
 inline Image heat_map(std::span<const HeatMap> maps, const HeatMapOptions& options = {}) {
-  require(!maps.empty(), "a picture of heat maps was asked for, but there is none");
+  require(!maps.empty(), "there is no heat map to draw, expected at least one");
   require(options.row_scale > 0 && options.column_scale > 0 && options.high >= 0,
           "the scales of a heat map are ", options.row_scale, " and ", options.column_scale,
           ", its highest value ", options.high, "; expected scales above 0 and a value of 0 or more");
@@ -81,7 +81,7 @@ inline Image heat_map(std::span<const HeatMap> maps, const HeatMapOptions& optio
       if (options.high <= 0 && std::isfinite(v)) high = std::max(high, static_cast<double>(v));
     }
   }
-  if (high <= 0) high = 1;  // nothing but zeros
+  if (high <= 0) high = 1;  // all values are zero
 
   const std::size_t chosen = std::clamp<std::size_t>(360 / std::max(rows, columns), 2, 40);
   const double cell = static_cast<double>(options.cell > 0 ? options.cell : chosen);
@@ -94,7 +94,7 @@ inline Image heat_map(std::span<const HeatMap> maps, const HeatMapOptions& optio
   const double bottom = top + tallest + 34 + (options.column_label.empty() ? 0 : 26);
   const Color ink{0x1b, 0x1f, 0x24}, soft{0x5b, 0x65, 0x70}, nothing{0xb4, 0xb9, 0xbf};
   double width = 16;
-  // A narrow map gets more room where its title needs it.
+  // A narrow map gets more room if its title needs it.
   const auto slot = [&](const HeatMap& map) {
     return std::max(cell * static_cast<double>(map.columns), std::min(text_width(map.title), 420.0));
   };
@@ -107,8 +107,8 @@ inline Image heat_map(std::span<const HeatMap> maps, const HeatMapOptions& optio
   width = std::max(bar_at + 16 + 8 + bar_numbers + 14, 32 + text_width(options.title));
 
   require(width <= 32768 && bottom <= 32768, "heat maps of ", maps.size(), " x ", rows, " x ", columns,
-          " cells of ", cell, " pixels make a picture of ", width, " x ", bottom,
-          " pixels, expected at most 32768 a side; draw fewer or smaller cells");
+          " cells of ", cell, " pixels make an image of ", width, " x ", bottom,
+          " pixels, expected at most 32768 per side; draw fewer or smaller cells");
   Image image(static_cast<std::size_t>(width), static_cast<std::size_t>(bottom));
   Canvas canvas(image);
   canvas.text(16, 14, options.title, ink);

@@ -1,4 +1,4 @@
-// Curves over a common axis: how a training went.
+// Line plots, such as training curves.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -15,9 +15,10 @@
 
 namespace motiongan::view {
 
+/// A curve and its name in the legend.
 struct Series {
   std::string name;
-  std::vector<double> x, y;  ///< [points] each; points that are not finite leave a gap
+  std::vector<double> x, y;  ///< [points] each; a point that is not finite leaves a gap
 };
 
 struct PlotOptions {
@@ -34,10 +35,10 @@ struct Axis {
   double part(double value) const { return (value - low) / (high - low); }
 };
 
-/// Limits that hold both values, and a step of 1, 2 or 5 times a power of ten that cuts them into about
-/// `pieces`.
+/// Axis limits that include both values, and a step of 1, 2 or 5 times a power of ten that divides them into
+/// about `pieces`.
 inline Axis nice_axis(double low, double high, double pieces) {
-  // A curve that does not change still needs an axis to stand on.
+  // A constant curve still needs an axis of non-zero length.
   if (high - low <= 1e-9 * std::max(std::abs(low), std::abs(high))) {
     const double room = std::max(std::abs(low) * 0.1, 1e-6);
     low -= room;
@@ -60,16 +61,17 @@ inline std::string axis_number(double value, double step) {
 
 }  // namespace detail
 
-/// A plot of `series` over common axes, with numbers and a legend. Error where the arrays of a series differ
-/// in length, no point is finite, or the picture is too small to hold the axes.
+/// Plots `series` over common axes, with axis labels and a legend. Throws Error if x and y of a series differ
+/// in length, no point is finite, or the size is below 240 x 160 pixels.
 inline Image line_plot(std::span<const Series> series, const PlotOptions& options = {}) {
-  require(options.width >= 240 && options.height >= 160, "a plot of ", options.width, " x ", options.height,
-          " pixels was asked for; expected at least 240 x 160");
+  require(options.width >= 240 && options.height >= 160,
+          "the plot size is ", options.width, " x ", options.height,
+          " pixels, expected at least 240 x 160");
   constexpr double infinity = std::numeric_limits<double>::infinity();
   double low_x = infinity, high_x = -infinity, low_y = infinity, high_y = -infinity;
   for (const Series& s : series) {
-    require(s.x.size() == s.y.size(), "the series '", s.name, "' has ", s.x.size(), " places and ",
-            s.y.size(), " values; expected as many of both");
+    require(s.x.size() == s.y.size(), "the series '", s.name, "' has ", s.x.size(), " x values and ",
+            s.y.size(), " y values, expected the same number");
     for (std::size_t i = 0; i < s.x.size(); ++i) {
       if (!std::isfinite(s.x[i]) || !std::isfinite(s.y[i])) continue;
       low_x = std::min(low_x, s.x[i]);
@@ -78,13 +80,13 @@ inline Image line_plot(std::span<const Series> series, const PlotOptions& option
       high_y = std::max(high_y, s.y[i]);
     }
   }
-  require(low_x <= high_x, "a plot of ", series.size(),
-          " series was asked for, but they hold no finite point");
+  require(low_x <= high_x, "none of the ", series.size(),
+          " series has a finite point to plot");
 
   const double width = static_cast<double>(options.width), height = static_cast<double>(options.height);
   const detail::Axis y_axis = detail::nice_axis(low_y, high_y, std::max(2.0, height / 80));
   detail::Axis x_axis = detail::nice_axis(low_x, high_x, std::max(2.0, width / 130));
-  if (high_x > low_x) {  // the curve uses the whole width
+  if (high_x > low_x) {  // let the curves use the full width
     x_axis.low = low_x;
     x_axis.high = high_x;
   }

@@ -20,9 +20,9 @@
 namespace motiongan::view {
 
 struct PlayerOptions {
-  std::string title = "motion";  ///< of the page, UTF-8
-  double max_rate = 60;          ///< frames per second; faster motions are thinned to keep the page small
-  std::size_t group = 1;         ///< so many motions at a time belong together and stand in one row
+  std::string title = "motion";  ///< page title, UTF-8
+  double max_rate = 60;          ///< frames per second; faster motions are subsampled to keep the page small
+  std::size_t group = 1;         ///< number of consecutive motions that form a group, shown in one row
 };
 
 namespace detail {
@@ -42,7 +42,7 @@ inline std::string base64(std::span<const std::uint8_t> bytes) {
   return out;
 }
 
-/// A JSON string that can also stand inside an HTML script element: no character of it can end the element.
+/// A JSON string that is safe inside an HTML script element: it cannot close the element.
 inline std::string json_string(std::string_view utf8) {
   std::string out = "\"";
   for (const char c : utf8) {
@@ -58,7 +58,7 @@ inline std::string json_string(std::string_view utf8) {
   return out + '"';
 }
 
-/// A number as JSON has it, with enough digits for a float.
+/// A JSON number with enough digits for a float.
 inline std::string json_number(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.9g", value);
@@ -74,10 +74,10 @@ std::string json_integers(const Range& values) {
   return out + "]";
 }
 
-/// One clip of the page: bones and positions, the latter as little-endian int16 [frames, nodes, 3] in base64.
+/// One clip of the page as JSON; positions are little-endian int16 [frames, nodes, 3] in base64.
 inline std::string json_clip(const ViewedMotion& viewed, double max_rate) {
   const Figure figure = make_figure(viewed);
-  // Whole strides, so that every frame shown is one that was computed.
+  // Whole strides, so that every frame shown is an original one.
   const double excess = std::ceil(figure.rate / max_rate - 1e-6);
   const std::size_t stride = excess > 1 ? static_cast<std::size_t>(excess) : 1;
   const std::size_t frames = (figure.frames - 1) / stride + 1;
@@ -123,14 +123,15 @@ inline std::string json_clip(const ViewedMotion& viewed, double max_rate) {
 
 }  // namespace detail
 
-/// An HTML page that plays `motions` side by side: play, pause, scrub, orbit, zoom, speed. It needs no
-/// network and no other file. The address may say where to begin: "page.html#t=1.5" stands still at 1.5 s.
-/// Error where there are no motions, or one cannot be drawn (see make_figure).
+/// A self-contained HTML page that plays `motions` side by side, with play, pause, scrub, orbit, zoom and
+/// speed controls. It needs no network access. The URL may set the start: "page.html#t=1.5" opens paused at
+/// 1.5 s. Throws Error if there are no motions, an option is out of range, or a motion cannot be drawn (see
+/// make_figure).
 inline std::string player_page(std::span<const ViewedMotion> motions, const PlayerOptions& options = {}) {
-  require(!motions.empty(), "a page to play motions was asked for, but no motion was given");
-  require(options.max_rate > 0, "the greatest frame rate of a page is ", options.max_rate,
+  require(!motions.empty(), "there is no motion to play, expected at least one");
+  require(options.max_rate > 0, "max_rate is ", options.max_rate,
           "; expected a positive number of frames per second");
-  require(options.group > 0, "motions in groups of 0 were asked for; expected at least 1");
+  require(options.group > 0, "group is 0, expected at least 1");
   std::string clips = "{\"title\":" + detail::json_string(options.title) +
                       (options.group > 1 ? ",\"group\":" + std::to_string(options.group) : "") +
                       ",\"clips\":[";
@@ -141,12 +142,12 @@ inline std::string player_page(std::span<const ViewedMotion> motions, const Play
   constexpr std::string_view page = view_files::player, marker = "/*CLIPS*/";
   constexpr std::size_t at = page.find(marker);
   static_assert(at != std::string_view::npos && page.find(marker, at + 1) == std::string_view::npos,
-                "view/player.html must hold the marker of the clips exactly once");
+                "view/player.html must contain the clip marker exactly once");
   return std::string(page.substr(0, at)) + clips + std::string(page.substr(at + marker.size()));
 }
 
-/// Writes player_page to `path`; a file that is there already is replaced only by a complete one.
-/// Error where the page cannot be made or written.
+/// Writes player_page() to `path`, atomically: an existing file is only replaced by a complete page. Throws
+/// Error if the page cannot be made or written.
 inline void write_player(const std::filesystem::path& path, std::span<const ViewedMotion> motions,
                          const PlayerOptions& options = {}) {
   const std::string page = player_page(motions, options);
@@ -160,14 +161,14 @@ inline void write_player(const std::filesystem::path& path, std::span<const View
     if (!out) {
       std::filesystem::remove(beside, problem);
       throw Error("cannot write the page ", path.string(), " (", page.size(),
-                  " bytes); check that the folder exists, may be written to and has room");
+                  " bytes); check that the folder exists, is writable and has free space");
     }
   }
   std::filesystem::rename(beside, path, problem);
   if (problem) {
     const std::string reason = problem.message();
     std::filesystem::remove(beside, problem);
-    throw Error("cannot put the page at ", path.string(), ": ", reason);
+    throw Error("cannot rename the finished page to ", path.string(), ": ", reason);
   }
 }
 

@@ -1,4 +1,4 @@
-// A picture of motions: one row of poses for each, at equal steps of time from left to right.
+// Pose strips: an image with one row of poses per motion, equally spaced in time.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -18,20 +18,21 @@
 namespace motiongan::view {
 
 struct StripOptions {
-  std::size_t poses = 10;           ///< in each row, the first and the last frame among them
-  std::size_t figure_height = 130;  ///< pixels from the ground to the head of a standing figure
-  double azimuth = 50;              ///< degrees: 0 faces the viewer, 90 faces right
-  double elevation = 8;             ///< degrees that the viewer looks down
+  std::size_t poses = 10;           ///< per row, including the first and the last frame
+  std::size_t figure_height = 130;  ///< height of a standing figure in pixels
+  double azimuth = 50;              ///< degrees; 0: facing the viewer, 90: facing right
+  double elevation = 8;             ///< degrees by which the viewer looks down
 };
 
 namespace detail {
 
-/// A figure seen from the side the options ask for: [poses, nodes] of (right, up, towards the viewer), from
-/// the ground below the root, in standing heights.
+/// A figure in view space.
 struct SeenFigure {
+  /// [poses, nodes] of (right, up, towards the viewer), relative to the floor below the root, in standing
+  /// heights.
   std::vector<motion::Vec3> points;
-  std::vector<std::size_t> frames;                  ///< [poses], which frame each pose is
-  double left = 0, right = 0, top = 0, bottom = 0;  ///< how far any pose reaches
+  std::vector<std::size_t> frames;                  ///< [poses], frame of each pose
+  double left = 0, right = 0, top = 0, bottom = 0;  ///< extent over all poses
 };
 
 inline SeenFigure see(const Figure& figure, const StripOptions& options) {
@@ -40,7 +41,7 @@ inline SeenFigure see(const Figure& figure, const StripOptions& options) {
   SeenFigure out;
   const std::size_t poses = std::min(options.poses, figure.frames);
   for (std::size_t i = 0; i < poses; ++i) {
-    // The middle of each step is rounded to the nearest frame; both ends are met exactly.
+    // Rounded to the nearest frame; the first and the last frame are included exactly.
     const std::size_t f = poses == 1 ? 0 : (i * (figure.frames - 1) + (poses - 1) / 2) / (poses - 1);
     out.frames.push_back(f);
     const motion::Vec3 root = figure.point(f, 0);
@@ -61,8 +62,7 @@ inline SeenFigure see(const Figure& figure, const StripOptions& options) {
   return out;
 }
 
-/// Draws pose `pose` with the ground below its root at (x, y); `size` is a standing figure's height in
-/// pixels.
+/// Draws pose number `pose` with the floor below its root at (x, y); `size` is the standing height in pixels.
 inline void draw_pose(Canvas& canvas, const Figure& figure, const SeenFigure& seen, std::size_t pose,
                       double x, double y, double size, bool given) {
   static constexpr std::array<Color, 3> lively = {
@@ -93,23 +93,24 @@ inline void draw_pose(Canvas& canvas, const Figure& figure, const SeenFigure& se
 
 }  // namespace detail
 
-/// One row for each motion: its title, poses at equal steps of time from left to right standing on a line,
-/// and their times in seconds. Left limbs are orange, right limbs blue, given (seed) frames grey; each figure
-/// is seen three quarters from the front, whichever way it faces, and all rows have the same scale. Error
-/// where there are no motions, or one cannot be drawn (see make_figure).
+/// Draws one row per motion: its title, poses at equal time steps standing on a line, and their times in
+/// seconds. Left limbs are orange, right limbs blue, seed frames grey. Figures are shown in three-quarter
+/// view whatever their heading, and all rows have the same scale. Throws Error if there are no motions, an
+/// option is out of range, or a motion cannot be drawn (see make_figure).
 inline Image pose_strip(std::span<const ViewedMotion> motions, const StripOptions& options = {}) {
-  require(!motions.empty(), "a strip of poses was asked for, but no motion was given");
-  require(options.poses > 0 && options.poses <= 200, "a strip of ", options.poses,
-          " poses was asked for; expected 1 to 200");
-  require(options.figure_height >= 20 && options.figure_height <= 2000, "figures of ", options.figure_height,
-          " pixels were asked for; expected 20 to 2000");
+  require(!motions.empty(), "there is no motion to draw, expected at least one");
+  require(options.poses > 0 && options.poses <= 200, "poses is ", options.poses,
+          ", expected 1 to 200");
+  require(options.figure_height >= 20 && options.figure_height <= 2000,
+          "figure_height is ", options.figure_height,
+          " pixels, expected 20 to 2000");
   std::vector<Figure> figures;
   std::vector<detail::SeenFigure> seen;
-  double left = -0.3, right = 0.3;  // the room one pose takes; the same everywhere, so that rows line up
+  double left = -0.3, right = 0.3;  // extent of a pose, the same for all rows so that they line up
   for (const ViewedMotion& viewed : motions) {
     figures.push_back(make_figure(viewed));
     seen.push_back(detail::see(figures.back(), options));
-    // Stretched limbs may reach into the neighbour's room, but not half way into it.
+    // Stretched limbs may overlap the neighbouring pose, but by less than half of its width.
     left = std::min(left, std::max(seen.back().left, -0.55));
     right = std::max(right, std::min(seen.back().right, 0.55));
   }

@@ -2,7 +2,7 @@
 #pragma once
 #include <set>
 
-#include "command.hpp"
+#include "shared/command.hpp"
 #include "motiongan/formats/text_file.hpp"
 #include "motiongan/data/vocabulary.hpp"
 #include "motiongan/train/run.hpp"

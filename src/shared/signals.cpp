@@ -1,5 +1,5 @@
 // Stopping where it is safe to.
-#include "signals.hpp"
+#include "shared/signals.hpp"
 
 #include <csignal>
 

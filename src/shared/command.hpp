@@ -1,4 +1,4 @@
-// What the verbs of the command share: how they are registered, and how they talk.
+// What the verbs of the command share: how they register themselves, and how they print.
 #pragma once
 #include <fmt/format.h>
 
@@ -21,21 +21,19 @@ namespace fs = std::filesystem;
 /// What main() runs once the command line has been read; the exit status.
 using Job = std::function<int()>;
 
-void add_devices(CLI::App& app, Job& job);
-void add_train_dvgan(CLI::App& train, Job& job);
-void add_train_attention(CLI::App& train, Job& job);
-void add_train_ranker(CLI::App& train, Job& job);
-void add_generate(CLI::App& app, Job& job);
-void add_complete(CLI::App& app, Job& job);
-void add_augment(CLI::App& app, Job& job);
-void add_search(CLI::App& app, Job& job);
-void add_info(CLI::App& app, Job& job);
-void add_view(CLI::App& app, Job& job);
-void add_synth(CLI::App& app, Job& job);
-void add_compare(CLI::App& app, Job& job);
-void add_ablate(CLI::App& app, Job& job);
-void add_evaluate(CLI::App& app, Job& job);
-void add_demo(CLI::App& app, Job& job);
+/// A verb of the command, such as "info" or "train dvgan". It stands once in its own file:
+///     const Verb verb{"info", [](CLI::App& app, Job& job) { ... }};
+/// main() calls `add` with the command, or with the group that the name begins with.
+struct Verb {
+  using Add = void (*)(CLI::App& parent, Job& job);
+  Verb(const char* name, Add add) { all().emplace_back(name, add); }
+
+  /// All verbs, in no particular order.
+  static std::vector<std::pair<std::string, Add>>& all() {
+    static std::vector<std::pair<std::string, Add>> verbs;
+    return verbs;
+  }
+};
 
 /// How this command was called, for lines that a reader is to type: "motiongan", or the path to it.
 inline std::string& program() {
@@ -96,19 +94,8 @@ inline void print_fact(std::string_view name, std::string_view text) {
 }
 
 /// Refuses what CLI11 would wrap around: a whole number below 0.
-inline CLI::Validator not_negative() {
-  return {[](std::string& text) {
-            return text.starts_with('-') ? concat("expected 0 or more, not ", text) : std::string();
-          },
-          ""};
-}
-inline CLI::Validator positive() {
-  return {[](std::string& text) {
-            const bool wrong = text.starts_with('-') || std::strtod(text.c_str(), nullptr) == 0;
-            return wrong ? concat("expected a number above 0, not ", text) : std::string();
-          },
-          ""};
-}
+CLI::Validator not_negative();
+CLI::Validator positive();
 
 /// "gpu", "cpu" or "other".
 inline const char* kind_of(const Device& device) {

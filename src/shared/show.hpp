@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <span>
 
-#include "command.hpp"
+#include "shared/command.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/view/player.hpp"
 #include "motiongan/view/pose_strip.hpp"
-#include "write_png.hpp"
+#include "shared/write_png.hpp"
 
 namespace motiongan::command {
 

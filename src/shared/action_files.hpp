@@ -1,6 +1,6 @@
 // Clips of positions as files: BVH, CSV or NPY.
 #pragma once
-#include "command.hpp"
+#include "shared/command.hpp"
 #include "motiongan/data/action_source.hpp"
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/formats/position_files.hpp"

@@ -1,0 +1,108 @@
+// One file for a model: weights, and what is needed to use them.
+//
+// A safetensors file whose metadata hold "motiongan_model" (which kind of model), "options" and "format" (both
+// JSON); a run's checkpoint holds the same and more. A model that can be kept in such files has
+//   Options               with list_fields()
+//   Format                and read_format(text, where), write_format(format): its JSON
+//   file_kinds            the names of its kinds, by an enum that is a member of its options
+//   kind_of(options)      that member
+//   part_name             the prefix of its tensors in a checkpoint
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "motiongan/io/fields_json.hpp"
+#include "motiongan/io/safetensors.hpp"
+#include "motiongan/nn/state_dict.hpp"
+
+namespace motiongan {
+
+/// Whether a file is the checkpoint of a training run.
+inline bool is_checkpoint(const io::SafeTensors& file) { return file.metadata.contains("iteration"); }
+
+/// The kind of model that a file holds: its "motiongan_model". Throws Error, naming the file, if it has none.
+inline const std::string& model_kind(const io::SafeTensors& file, const std::string& where) {
+  const auto found = file.metadata.find("motiongan_model");
+  require(found != file.metadata.end(), where,
+          ": not a motiongan model (no \"motiongan_model\" in its metadata)");
+  return found->second;
+}
+
+/// Whether a file, or a checkpoint, holds a model of this class.
+template <class Model>
+bool holds_model(const io::SafeTensors& file) {
+  const auto found = file.metadata.find("motiongan_model");
+  if (found == file.metadata.end()) return false;
+  for (const auto& [kind, name] : Model::file_kinds)
+    if (found->second == name) return true;
+  return false;
+}
+
+/// Adds the metadata of a model file: its kind, its options and its format.
+template <class Model>
+void describe_model(const Model& model, io::SafeTensors& file) {
+  auto options = model.options();
+  for (const auto& [kind, name] : Model::file_kinds)
+    if (kind == Model::kind_of(options)) file.metadata["motiongan_model"] = name;
+  file.metadata["options"] = io::fields_to_text(fields_of(options));
+  file.metadata["format"] = Model::write_format(model.format());
+}
+
+/// Writes the weights (PyTorch's names and shapes) and the metadata as one safetensors file.
+template <class Model>
+void save_model(Model& model, const std::filesystem::path& path) {
+  io::SafeTensors file;
+  describe_model(model, file);
+  io::save_parameters(named_parameters(model), file);
+  file.write(path);
+}
+
+/// The options that a file's metadata hold. Throws Error if it holds a model of another class, or if a value
+/// is not permitted.
+template <class Model>
+typename Model::Options model_options(const io::SafeTensors& file, const std::string& where) {
+  typename Model::Options options;
+  const std::string& found = model_kind(file, where);
+  std::string names;
+  bool known = false;
+  for (const auto& [kind, name] : Model::file_kinds) {
+    names += (names.empty() ? "" : ", ") + std::string(name);
+    if (found != name) continue;
+    Model::kind_of(options) = kind;
+    known = true;
+  }
+  require(known, where, ": holds a model called \"", found, "\", expected one of ", names);
+  const auto text = file.metadata.find("options");
+  require(text != file.metadata.end(), where, ": the model has no \"options\" in its metadata");
+  const FieldList fields = fields_of(options);
+  io::fields_from_text(fields, text->second, where + ": the model's options");
+  try {
+    fields.check();
+  } catch (const Error& error) {
+    throw Error(where, ": the model's options: ", error.what());
+  }
+  return options;
+}
+
+/// The format that a file's metadata hold: what the model's numbers mean as motion.
+template <class Model>
+typename Model::Format model_format(const io::SafeTensors& file, const std::string& where) {
+  const auto text = file.metadata.find("format");
+  require(text != file.metadata.end(), where, ": the model has no motion format in its metadata");
+  return Model::read_format(text->second, where);
+}
+
+/// A model that save_model() wrote, or that of a run's checkpoint. Throws Error, naming the file and what is
+/// wrong with it, for any other.
+template <class Model>
+Model load_model(const Context& context, const std::filesystem::path& path) {
+  const std::string where = path.string();
+  const io::SafeTensors file = io::SafeTensors::read(path);
+  const auto options = model_options<Model>(file, where);
+  Model model(context, model_format<Model>(file, where), options);
+  io::load_parameters(named_parameters(model), file, where,
+                      is_checkpoint(file) ? std::string(Model::part_name) + "." : "");
+  return model;
+}
+
+}  // namespace motiongan

@@ -1,0 +1,65 @@
+// Clips that stay on the device while windows of them are drawn into batches.
+#pragma once
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "motiongan/core/tensor.hpp"
+
+namespace motiongan {
+
+/// Columns of a pose that a window counts from its own start, and those that turn with its first heading.
+struct WindowForm {
+  std::vector<cl_int> relative = {};                ///< 1 for each column that is made relative; empty: none
+  std::size_t x = 0, z = 0, yaw = 0;                ///< columns of the root's place and yaw; yaw = dof: no turn
+  double yaw_scale = 0;
+};
+
+/// Poses [all frames, dof] of clips, one after the other, in one buffer. A sampler decides which windows to
+/// draw; gather() copies them into a batch.
+class ClipBuffer {
+ public:
+  ClipBuffer() = default;
+  /// `clips` are the poses of each clip, [frames, dof].
+  ClipBuffer(const Context& context, std::size_t dof, const std::vector<std::span<const float>>& clips)
+      : ClipBuffer(context, dof, clips, {.x = dof, .z = dof, .yaw = dof}) {}
+  ClipBuffer(const Context& context, std::size_t dof, const std::vector<std::span<const float>>& clips,
+             WindowForm form)
+      : context_(context), form_(std::move(form)) {
+    std::size_t total = 0;
+    for (const std::span<const float> clip : clips) {
+      first_rows_.push_back(total / dof);
+      total += clip.size();
+    }
+    poses_ = Tensor(context, {total / dof, dof});
+    for (std::size_t i = 0; i < clips.size(); ++i)
+      poses_.view(first_rows_[i] * dof, {clips[i].size() / dof, dof}).write(clips[i]);
+    if (form_.relative.empty()) form_.relative.assign(dof, 0);
+    relative_ = Indices(context, form_.relative);
+  }
+
+  std::size_t dof() const { return poses_.dim(1); }
+
+  /// The row of a clip's frame, for gather().
+  cl_int row(std::size_t clip, std::size_t frame) const {
+    return static_cast<cl_int>(first_rows_[clip] + frame);
+  }
+
+  /// Windows of `frames` frames, every `stride`-th from the given rows on: [frames, rows, dof].
+  Tensor gather(const std::vector<cl_int>& rows, std::size_t frames, std::size_t stride = 1) const {
+    Tensor out(*context_, {frames, rows.size(), dof()});
+    context_->launch("layout", "gather_windows", LaunchGrid::items(frames * rows.size()), poses_,
+                     Indices(*context_, rows), relative_, out, frames, rows.size(), dof(), stride, form_.x,
+                     form_.z, form_.yaw, KernelReal{form_.yaw_scale});
+    return out;
+  }
+
+ private:
+  std::optional<Context> context_;
+  std::vector<std::size_t> first_rows_;
+  Tensor poses_;
+  WindowForm form_;
+  Indices relative_;
+};
+
+}  // namespace motiongan

@@ -1,0 +1,101 @@
+#include "train/run_start.hpp"
+
+#include "motiongan/train/progress.hpp"
+#include "shared/signals.hpp"
+
+namespace motiongan::command {
+
+void add_run_options(CLI::App& verb, RunArgs& args, const std::string& save_default) {
+  verb.add_option("--save", args.save, "folder of the run [" + save_default + "]")->type_name("DIR");
+  verb.add_flag("--resume", args.resume,
+                "continue the run in --save; its options are those of its first start");
+  add_options(verb, fields_of(args.run), "Run");
+}
+
+std::string options_note(const fs::path& checkpoint) {
+  if (!fs::exists(checkpoint)) return {};
+  const RunRecord record = read_run_record(checkpoint);
+  const auto note = record.notes.find("options");
+  return note == record.notes.end() ? std::string() : note->second;
+}
+
+fs::path default_save(const std::string& clips, const char* builtin) {
+  if (clips.empty()) return fs::path("save") / builtin;
+  fs::path folder = fs::absolute(clips).lexically_normal();
+  if (!folder.has_filename()) folder = folder.parent_path();
+  const fs::path name = folder.stem();
+  return fs::path("save") / (name.empty() ? "run" : name);
+}
+
+void require_one_source(const CLI::App& verb) {
+  require(!(verb.count("FOLDER") && verb.count("--procedural")),
+          "give a folder of clips or --procedural, not both");
+}
+
+RunStart begin_run(const RunArgs& args, const fs::path& save, bool has_data, const CLI::App& verb,
+                   const std::function<void(const std::string&, const fs::path&)>& take) {
+  require_one_source(verb);
+  if (verb.count("--procedural")) require(has_data, "--procedural is 0, expected at least 1 clip");
+  require(has_data || args.resume,
+          "there is nothing to train on: give a folder of BVH clips, or --procedural");
+  require(has_data || !args.save.empty(), "--resume needs --save DIR, the folder of the run");
+  RunStart start{args.save.empty() ? save : fs::path(args.save), 0};
+  const RunFiles files{start.folder};
+  if (!args.resume) {
+    require(!fs::exists(files.checkpoint()), start.folder.string(),
+            " already holds a run; continue it with --resume, or choose another --save");
+    return start;
+  }
+  require(fs::exists(files.checkpoint()), "there is no run to resume in ", start.folder.string(), " (no ",
+          files.checkpoint().filename().string(), " there)");
+  start.done = read_run_record(files.checkpoint()).iteration;
+  const std::string note = options_note(files.checkpoint());
+  if (!note.empty())
+    take(note, files.checkpoint());
+  else
+    require(has_data, files.checkpoint().string(),
+            " does not say what it was trained on; give the folder and the options of its first start");
+  return start;
+}
+
+bool is_done(const RunStart& start, const RunArgs& args, std::size_t iterations) {
+  if (!args.resume || start.done < iterations) return false;
+  fmt::print("{} has all its {} already; --iterations N asks for more\n", start.folder.string(),
+             counted(start.done, "iteration"));
+  return true;
+}
+
+void print_saved_to(const fs::path& folder, double save_every_minutes) {
+  print_fact("saved to",
+             fmt::format("{}, every {} and at the end", folder.string(), duration(save_every_minutes * 60)));
+}
+
+RunResult run_shown(Trainer& trainer, const std::function<void(const fs::path&)>& write_split,
+                    const RunArgs& args, const RunStart& start, const std::string& note,
+                    const ShownLosses& shown_losses, const char* verb) {
+  ProgressBar bar;
+  bar.start(trainer.iterations(), start.done);
+  RunOptions run = args.run;
+  run.save_dir = start.folder;
+  run.resume = args.resume;
+  run.notes = {{"options", note}};
+  run.should_stop = [] { return caught_signal() != 0; };
+  run.report = [&](std::size_t iteration, std::span<const NamedLoss> losses) {
+    std::vector<NamedValue> values;
+    for (const auto& [name, short_name] : shown_losses)
+      values.emplace_back(short_name, (name == "recall1" ? 100 : 1) * loss_of(losses, name));
+    bar.update(iteration, values);
+  };
+  catch_signals();
+  const RunResult result = run_training(trainer, write_split, run);
+  bar.finish();
+  fmt::print("{} after {} of {} iterations; saved in {}\n", result.stopped ? "stopped" : "finished",
+             result.iterations, trainer.iterations(), start.folder.string());
+  if (result.stopped)
+    fmt::print("continue: {} {} --resume --save {}\n", program(), verb, start.folder.string());
+  return result;
+}
+
+int exit_status() { return caught_signal() != 0 ? 128 + caught_signal() : 0; }
+
+}  // namespace motiongan::command
