@@ -1,8 +1,9 @@
-// The attention WGAN-GP beside PyTorch: the names and the work of `torch_peer.py speed --models attention`
-// (30 frames, 93 numbers a pose, 4 classes, C = 256). The critic's step makes its fakes and includes Adam; a
-// rollout is 30 seconds of motion, second by second, each the next one's prior.
+// The attention WGAN-GP compared with PyTorch: the same names and workload as
+// `torch_peer.py speed --models attention` (30 frames, 93 dof, 4 classes, C = 256). The critic step includes
+// generating the fakes and Adam; a rollout is 30 seconds of motion, each second the prior of the next.
 //   bench_attention [--json] [--peer torch_peer.py] [--seconds 4]
-// With --peer the same work is timed in PyTorch afterwards, in a process of its own, and the ratio is given.
+// With --peer the script then times the same workload in PyTorch, in a separate process, and the ratio is
+// printed.
 #include <motiongan/networks/attention_critic.hpp>
 #include <motiongan/networks/attention_rollout.hpp>
 #include <motiongan/optim/adam.hpp>

@@ -1,8 +1,8 @@
-// How fast is gemm()? Against the device's measured peak, and against OpenBLAS where the build found it.
-//   bench_gemm [--json] [NAME...]     a table, or one JSON object a line; NAMEs pick shapes
-// Calls follow each other without waiting, as in training; a figure is the best sample of at least 0.4 s of
-// them. OpenBLAS runs first and in a process of its own, for its threads spin on after a call and would slow
-// ours.
+// Speed of gemm() compared with the device's measured peak, and with OpenBLAS if the build found it.
+//   bench_gemm [--json] [NAME...]     a table, or one JSON object per line; NAMEs select shapes
+// Calls are queued without waiting, as in training; a result is the best of all samples taken in at least
+// 0.4 s. OpenBLAS runs first and in a separate process, because its threads keep spinning after a call and
+// would slow ours.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -26,11 +26,11 @@ struct Shape3 {
   const char* name;  ///< m x n x k
   std::size_t m, n, k;
   bool a_transposed = false, b_transposed = false;
-  std::size_t taps = 1;  ///< segments
+  std::size_t taps = 1;  ///< products that are summed: GemmCall::segments
   double flops() const { return 2.0 * static_cast<double>(m * n * k * taps); }
 };
 
-// _bt: B stored [n,k], the forward pass of Linear, LSTM and (three taps) Conv1d with PyTorch's weights.
+// _bt: B is stored [n, k], as PyTorch's weights are: the forward pass of Linear, LSTM and Conv1d (3 taps).
 constexpr Shape3 shapes[] = {{"4096x256x256", 4096, 256, 256},
                              {"256x256x4096", 256, 256, 4096, true},
                              {"64x1024x512", 64, 1024, 512},
@@ -59,13 +59,13 @@ std::vector<float> operand(std::size_t n, unsigned seed) {
   return values;
 }
 
-/// Best GFLOP/s of `many(n)`, which does n products and returns when all are done.
+/// The best GFLOP/s of `many(n)`, which runs n products and waits for them.
 template <class Many>
 double best_rate(double flops, const Many& many) {
   many(1);
   std::size_t count = 1;
   double took = 0;
-  while (true) {  // a sample lasts about two milliseconds
+  while (true) {  // double the count until a sample takes more than a millisecond
     const double start = bench::seconds();
     many(count);
     took = bench::seconds() - start;
@@ -122,7 +122,7 @@ void openblas(const std::vector<std::string>& names) {
 }
 #endif
 
-/// OpenBLAS's figures by shape, measured in a child process; empty when it is not compiled in.
+/// OpenBLAS's GFLOP/s by shape, measured in a child process; empty if it is not compiled in.
 std::map<std::string, double> openblas_rates([[maybe_unused]] const std::vector<std::string>& names) {
   std::map<std::string, double> rates;
 #ifdef MOTIONGAN_HAVE_OPENBLAS
@@ -153,7 +153,7 @@ std::map<std::string, double> openblas_rates([[maybe_unused]] const std::vector<
 #else
   std::fprintf(stderr,
                "OpenBLAS is not compiled in (on Debian: apt-get install libopenblas-dev, then configure "
-               "again): its figures are null\n");
+               "again): its results are null\n");
 #endif
   return rates;
 }
@@ -187,7 +187,7 @@ int run(const std::vector<std::string>& arguments) {
                          [&](const Shape3& s) { return argument == s.name; }))
       names.push_back(argument);
     else
-      throw Error("\"", argument, "\" is neither --json nor a shape such as ", shapes[0].name);
+      throw Error("unknown argument \"", argument, "\", expected --json or a shape such as ", shapes[0].name);
   }
   const std::map<std::string, double> peer = openblas_rates(names);
   const Context context;
@@ -200,9 +200,10 @@ int run(const std::vector<std::string>& arguments) {
     rates.push_back(ours(context, shape));
     peak.measure();
   }
-  const double ceiling = peak.measure();  // the best of all that was seen in between
+  const double ceiling = peak.measure();  // the best of all measurements so far
   if (!json)
-    std::printf("%-22s %9s %8s %7s %9s %7s\n", "m x n x k", "GFLOP/s", "peak", "share", "OpenBLAS", "ratio");
+    std::printf("%-22s %9s %8s %7s %9s %7s\n", "m x n x k", "GFLOP/s", "peak", "of peak", "OpenBLAS",
+                "ratio");
   std::size_t next = 0;
   for (const Shape3& shape : shapes) {
     if (!chosen(shape, names)) continue;

@@ -1,5 +1,4 @@
-// The most fused multiply-adds per second that the device does, on all its cores: the ceiling beside which
-// every other figure is put.
+// The peak arithmetic throughput of the device: fused multiply-adds per second on all its cores.
 #pragma once
 #include <algorithm>
 #include <chrono>
@@ -12,11 +11,11 @@ inline double seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Runs independent chains of fma in vector registers.
+/// Measures it with independent chains of fma in vector registers.
 class Peak {
  public:
   explicit Peak(const Context& context) : context_(context), sink_(context.allocate(groups * 64)) {
-    // As many chains as fit the registers beside the two factors: 32 of 64 bytes, else 16.
+    // As many chains as fit the registers next to the two factors: 32 registers of 64 bytes, otherwise 16.
     const bool wide = context.vector_width() * context.real_size() == 64;
     chains_ = wide ? 20 : 12;
     const std::string real = context.precision() == Precision::f64 ? "double" : "float";
@@ -41,7 +40,7 @@ class Peak {
     check_cl(code, "clCreateKernel", ": peak");
   }
 
-  /// GFLOP/s, the best of several runs of a few milliseconds each and of all earlier calls.
+  /// GFLOP/s: the best of several runs of a few milliseconds each, including those of earlier calls.
   double measure() {
     run(1000);
     for (int i = 0; i < 15; ++i) best_ = std::max(best_, run(100'000));

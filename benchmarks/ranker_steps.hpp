@@ -1,4 +1,4 @@
-// A ranker's training step: 64 windows of 32 frames against 64 descriptions of 6 words, Adam included.
+// A training step of a ranker: 64 windows of 32 frames and 64 descriptions of 6 words, including Adam.
 #pragma once
 #include <motiongan/networks/cnn_ranker.hpp>
 #include <motiongan/networks/rnn_ranker.hpp>
@@ -10,7 +10,7 @@
 
 namespace motiongan::bench {
 
-/// The same names and work as ranker_peer.py's.
+/// The same names and workload as in ranker_peer.py.
 template <class Network>
 Measured ranker_step(const Context& context, const std::string& name, double seconds) {
   constexpr std::size_t batch = 64, frames = 32, dof = 69, vocabulary = 100, words = 6;

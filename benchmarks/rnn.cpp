@@ -1,9 +1,9 @@
-// The recurrent half of DVGAN beside PyTorch: the names and the work of `torch_peer.py speed --models
-// rnn,rnn_critic` (500 words, 93 dof, 64 frames, k = 256; steps include their optimiser, the critic's makes
-// its fakes), and how many frames per second a stream of characters makes, frame by frame.
+// The recurrent networks of DVGAN compared with PyTorch: the same names and workload as `torch_peer.py speed
+// --models rnn,rnn_critic` (500 words, 93 dof, 64 frames, k = 256; steps include Adam, the critic step
+// includes generating the fakes), and the frames per second when streaming characters frame by frame.
 //   bench_rnn [--json] [--peer torch_peer.py] [--seconds 4]
-// With --peer the same steps are timed in PyTorch afterwards, in a process of its own, and the ratio is
-// given.
+// With --peer the script then times the same steps in PyTorch, in a separate process, and the ratio is
+// printed.
 #include <motiongan/networks/cnn_critic.hpp>
 #include <motiongan/networks/rnn_critic.hpp>
 #include <motiongan/networks/rnn_stream.hpp>
@@ -29,7 +29,7 @@ std::vector<std::vector<int>> random_sentences(std::size_t count) {
   return sentences;
 }
 
-/// As a user samples: the words are new each time, the model's weights are not.
+/// Sampling as in use: new sentences every time, with the same weights.
 Measured sample(const Context& context, const RnnGenerator& generator, std::size_t batch, double seconds) {
   RnnStream stream(generator);
   const auto sentences = random_sentences(batch);
@@ -43,14 +43,14 @@ Measured sample(const Context& context, const RnnGenerator& generator, std::size
   });
 }
 
-/// Frames per second of `count` characters that all go on by one frame at a time.
+/// Frames per second of `count` characters that all advance one frame at a time.
 Measured streaming(const Context& context, const RnnGenerator& generator, std::size_t count, double seconds) {
   RnnStream stream(generator);
   std::vector<StreamStart> starts;
   for (const auto& sentence : random_sentences(count))
     starts.push_back({sentence, 1, static_cast<std::uint32_t>(starts.size())});
   stream.add(starts);
-  constexpr std::size_t steps = 16;  // a measurement: plots are made for up to 16 frames ahead
+  constexpr std::size_t steps = 16;  // per measurement, because plots are computed up to 16 frames ahead
   Measured m = measure(context, "dvgan_rnn_stream_" + std::to_string(count), seconds, [&] {
     for (std::size_t i = 0; i < steps; ++i) stream.step(1);
   });

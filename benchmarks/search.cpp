@@ -1,11 +1,12 @@
-// Generative search over 10,000 clips: 16 hypotheses of 32 frames, 69 numbers a pose of which three (x, z and
-// yaw) are counted anew at every shift, 33 shifts.
-//   bench_search [--json] [--seconds 4] [--peer none|benchmarks/ranker_peer.py] [--model MODEL --collection
-//   DIR [--command motiongan]]
-// Poses are made in memory; no file is read. The peer is the same search as loops over windows, hypotheses
-// and dimensions in C++ (-O3, single precision, both cores), on fewer windows. With --model and --collection
-// the command itself is timed: the first query with an index to be made of the collection's files, then later
-// ones. And a ranker's training step, beside PyTorch with --peer benchmarks/ranker_peer.py.
+// Generative search over 10,000 clips: 16 hypotheses of 32 frames, 69 dof, of which three (x, z and yaw) are
+// recomputed relative to the overlap at each of the 33 shifts.
+//   bench_search [--json] [--seconds 4] [--peer none|benchmarks/ranker_peer.py]
+//                [--model MODEL --collection DIR [--command motiongan]]
+// Poses are generated in memory; no file is read. The reference is the same search as plain C++ loops over
+// windows, hypotheses and dimensions (-O3, single precision, two threads), on fewer windows. With --model and
+// --collection the command itself is timed: the first query, which builds the index of the collection's
+// files, and later ones. Also times a ranker's training step, compared with PyTorch by --peer
+// benchmarks/ranker_peer.py.
 #include <cstdlib>
 #include <filesystem>
 #include <motiongan/search/windows.hpp>
@@ -23,7 +24,8 @@ namespace {
 
 constexpr std::size_t clips = 10'000, frames = 32, dof = 69, hypotheses = 16;
 
-/// Poses of a body of 23 joints without its root's position but its yaw; what they mean does not matter here.
+/// A format with 69 dof: a root with position and heading, and 21 more joints. The poses themselves are
+/// random.
 motion::MotionFormat make_format() {
   motion::Skeleton skeleton;
   for (std::size_t j = 0; j < 22; ++j)
@@ -49,9 +51,9 @@ std::vector<float> numbers(std::size_t count, unsigned seed) {
 #pragma GCC push_options
 #pragma GCC optimize("O3")
 #endif
-/// The peer: for each window and hypothesis all pairs of frames that a shift brings together, then the sums
-/// along them. Squares of differences, so that it loses no digits; the root is counted from the window's
-/// first frame only (the search counts it anew at every shift, which would cost the peer more).
+/// The reference: for each window and hypothesis the distances of all pairs of frames that any shift aligns,
+/// then their sum for each shift. Squared differences, so that no precision is lost. The root is relative to
+/// the window's first frame only; the search recomputes it at every shift, which would cost more here.
 float plain_search(const std::vector<float>& poses, std::size_t first, std::size_t last,
                    const std::vector<std::vector<float>>& made) {
   float total = 0;
@@ -84,7 +86,7 @@ float plain_search(const std::vector<float>& poses, std::size_t first, std::size
 #pragma GCC pop_options
 #endif
 
-/// Milliseconds that the loops take for all clips, from a share of them.
+/// Milliseconds of the loops for all clips, extrapolated from 1/100 of them.
 double peer_ms(const std::vector<float>& poses, const std::vector<std::vector<float>>& made) {
   constexpr std::size_t share = 100;
   double best = std::numeric_limits<double>::infinity();
@@ -104,7 +106,7 @@ double peer_ms(const std::vector<float>& poses, const std::vector<std::vector<fl
 
 #ifdef MOTIONGAN_HAVE_OPENBLAS
 /// Milliseconds of OpenBLAS for the products of all frames of the clips with all frames of the hypotheses, in
-/// pieces that stay in the caches, and nothing else: what a search without spectra must at least do.
+/// blocks that fit the caches, and nothing else: a lower bound for a search without spectra.
 double openblas_ms(const std::vector<float>& poses, const std::vector<std::vector<float>>& made) {
   constexpr std::size_t rows = 2000, columns = hypotheses * frames;
   std::vector<float> all, products(rows * columns);
@@ -122,7 +124,7 @@ double openblas_ms(const std::vector<float>& poses, const std::vector<std::vecto
 }
 #endif
 
-/// Wall milliseconds of the command.
+/// Wall-clock milliseconds of the command.
 double command_ms(const std::string& line) {
   const double start = bench::seconds();
   require(std::system(line.c_str()) == 0, "this command failed: ", line);
@@ -156,9 +158,9 @@ int run(const Options& options) {
   std::vector<bench::Measured> lines{
       bench::measure(context, "search_10000_query", options.seconds, [&] { kept(made); }),
       bench::measure(context, "search_10000_load_and_query", options.seconds, [&] { once(made); })};
-  // Beside the products of spectra, which gemm counts: two sums over frequencies a shift and hypothesis (one
-  // multiply-add for the real and the imaginary part each), five multiply-adds a frame that overlaps for the
-  // root; and, where windows are loaded, their spectra.
+  // In addition to the products of spectra, which gemm counts: two sums over frequencies per shift and
+  // hypothesis (one multiply-add each for the real and the imaginary part), five multiply-adds per
+  // overlapping frame for the root; and the spectra of the windows where these are loaded.
   constexpr std::size_t half = frames / 2, spectrum = (frames + half) / 2 + 1;
   constexpr double n = frames, reach = half, frequencies = spectrum;
   const double nearest =
@@ -166,7 +168,7 @@ int run(const Options& options) {
       ((reach + 1) * frequencies * 2 + 5 * (n + 2 * (n * reach - reach * (reach + 1) / 2)));
   for (bench::Measured& line : lines) line.gflop += nearest / 1e9;
   lines[1].gflop += 2.0 * clips * (dof - 3) * frequencies * 2 * n / 1e9;
-  const double pairs = n * n - (n - reach) * (n - reach - 1);  // of frames, at shifts up to the reach
+  const double pairs = n * n - (n - reach) * (n - reach - 1);  // pairs of frames, at shifts up to `reach`
   for (bench::Measured& line : lines) {
     line.extra["queries_per_second"] = 1e3 / line.ms;
     line.extra["gflop_of_all_pairs"] = 2.0 * clips * hypotheses * pairs * dof / 1e9;
@@ -179,7 +181,7 @@ int run(const Options& options) {
       line.extra["ratio_loops"] = ms / line.ms;
     }
 #ifdef MOTIONGAN_HAVE_OPENBLAS
-    const double products = openblas_ms(poses, made);  // last: its threads spin on
+    const double products = openblas_ms(poses, made);  // last, because its threads keep spinning
     for (bench::Measured& line : lines) {
       line.extra["openblas_all_pairs_ms"] = products;
       line.extra["ratio_openblas"] = products / line.ms;
@@ -261,7 +263,8 @@ Options read_options(int argc, char** argv) {
     else
       throw Error("unknown argument ", name);
   }
-  require(options.model.empty() == options.collection.empty(), "--model and --collection belong together");
+  require(options.model.empty() == options.collection.empty(),
+          "only one of --model and --collection was given, expected both");
   return options;
 }
 

@@ -1,4 +1,4 @@
-// Steps of training and sampling beside PyTorch: timing, the peer's times, and how both are printed.
+// Timing of training and sampling steps, compared with PyTorch: measuring, running the peer script, printing.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -14,14 +14,14 @@
 
 namespace motiongan::bench {
 
-/// One measurement; `extra` goes into its line as it is.
+/// One measurement; `extra` is added to its line unchanged.
 struct Measured {
   std::string name;
   double ms = 0, gflop = 0;
   nlohmann::ordered_json extra = nlohmann::ordered_json::object();
 };
 
-/// Median time of a step that ends when the device has run it, and the arithmetic of its matrix products.
+/// The median time of a step, including waiting for the device, and the GFLOP of its matrix products.
 template <class Step>
 Measured measure(const Context& context, std::string name, double seconds, Step step) {
   for (int i = 0; i < 3; ++i) step();
@@ -41,7 +41,7 @@ Measured measure(const Context& context, std::string name, double seconds, Step 
   return {std::move(name), 1e3 * times[times.size() / 2], flops / 1e9};
 }
 
-/// The peer's milliseconds by name; empty when it could not be run.
+/// The peer's milliseconds by name; empty if it could not be run.
 inline std::map<std::string, double> peer_times(const std::string& script, const std::string& models,
                                                 std::string& version) {
   std::map<std::string, double> times;
@@ -59,7 +59,7 @@ inline std::map<std::string, double> peer_times(const std::string& script, const
   return times;
 }
 
-/// Reads the options, measures and prints; `models` is what the peer is asked for.
+/// Parses the arguments, measures and prints; `models` is passed to the peer.
 inline int run(const char* program, const std::string& models,
                const std::function<std::vector<Measured>(const Context&, double seconds)>& measure_all,
                int argc, char** argv) {
@@ -117,7 +117,7 @@ inline int run(const char* program, const std::string& models,
   return 0;
 }
 
-/// main() of a benchmark.
+/// The main() of a benchmark.
 inline int main(const char* program, const std::string& models,
                 const std::function<std::vector<Measured>(const Context&, double seconds)>& measure_all,
                 int argc, char** argv) {

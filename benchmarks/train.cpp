@@ -1,9 +1,9 @@
-// The steps of DVGAN's training beside PyTorch: the names and the work of `torch_peer.py speed --models cnn`
-// (500 words, 93 dof, 32 frames, final cut, k = 256, batch 64; the critic's step makes its fakes and includes
-// Adam).
+// DVGAN's training steps compared with PyTorch: the same names and workload as `torch_peer.py speed --models
+// cnn` (500 words, 93 dof, 32 frames, final cut, k = 256, batch 64; steps include Adam, the critic step
+// includes generating the fakes).
 //   bench_train [--json] [--peer torch_peer.py] [--seconds 4]
-// With --peer the same steps are timed in PyTorch afterwards, in a process of its own, and the ratio is
-// given.
+// With --peer the script then times the same steps in PyTorch, in a separate process, and the ratio is
+// printed.
 #include <motiongan/networks/cnn_critic.hpp>
 #include <motiongan/networks/cnn_generator.hpp>
 #include <motiongan/optim/adam.hpp>

@@ -1,10 +1,10 @@
-# Every benchmarks/*.cpp is one program. OpenBLAS is a peer to measure against, nothing else uses it.
+# Every benchmarks/*.cpp is a program. OpenBLAS is only a reference to compare with; nothing else uses it.
 file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/benchmarks/*.cpp")
 find_path(OPENBLAS_INCLUDE_DIR cblas.h PATH_SUFFIXES openblas openblas-pthread)
 find_library(OPENBLAS_LIBRARY openblas)
 mark_as_advanced(OPENBLAS_INCLUDE_DIR OPENBLAS_LIBRARY)
 if(sources AND NOT (OPENBLAS_INCLUDE_DIR AND OPENBLAS_LIBRARY))
-  message(STATUS "motiongan: benchmarks do not compare with OpenBLAS; on Debian that needs: apt-get install libopenblas-dev")
+  message(STATUS "motiongan: benchmarks are built without OpenBLAS; on Debian: apt-get install libopenblas-dev")
 endif()
 foreach(source IN LISTS sources)
   get_filename_component(name "${source}" NAME_WE)

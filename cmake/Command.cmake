@@ -1,6 +1,5 @@
-# The motiongan command: src/**/*.cpp. Files of one folder are compiled as one: the library is all headers, and
-# would otherwise be compiled once more for every file (2.5 times the time). -DMOTIONGAN_UNITY=OFF for single
-# files, while working on one of them.
+# The motiongan command: src/**/*.cpp, one unity-build unit per folder, because compiling the headers again
+# for every file takes 2.5 times as long. Use -DMOTIONGAN_UNITY=OFF while working on a single file.
 file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/src/*.cpp")
 find_package(CLI11 QUIET)
 find_package(fmt QUIET)

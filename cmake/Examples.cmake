@@ -1,10 +1,10 @@
-# Every examples/*.cpp is one program, and one test that runs it in a folder of its own.
+# Every examples/*.cpp is a program, and a test that runs it in its own folder.
 file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/examples/*.cpp")
 foreach(source IN LISTS sources)
   get_filename_component(name "${source}" NAME_WE)
   set(target "example_${name}")
   own_program(${target} "${source}")
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)   # as the tests: sooner compiled, and none runs long
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)   # as for the tests: compiles faster, and none runs long
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/examples")
   if(MOTIONGAN_BUILD_TESTS)
     set(folder "${PROJECT_BINARY_DIR}/examples/run/${name}")

@@ -1,5 +1,5 @@
-# Finds CLBlast by its header and library and defines CLBlast::CLBlast.
-# (CLBlast's own package file names one exact library version and one build type; this works beside and without it.)
+# Finds CLBlast by its header and library and defines CLBlast::CLBlast. CLBlast's own package file requires
+# one exact library version and build type; this module works with and without it.
 find_path(CLBlast_INCLUDE_DIR clblast.h)
 find_library(CLBlast_LIBRARY clblast)
 include(FindPackageHandleStandardArgs)

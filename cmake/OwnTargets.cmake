@@ -1,8 +1,8 @@
-# What every program of this project shares. None of it reaches those who use the library.
+# Settings shared by the programs of this project. They do not propagate to users of the library.
 
 add_library(motiongan_own INTERFACE)
 target_link_libraries(motiongan_own INTERFACE motiongan)
-# (GCC 12 takes an empty std::optional for an uninitialised value, now here, now there, as it inlines.)
+# GCC 12 reports false positives of -Wmaybe-uninitialized for an empty std::optional, depending on inlining.
 target_compile_options(motiongan_own INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized> $<$<BOOL:${MOTIONGAN_WERROR}>:-Werror>)
@@ -14,7 +14,7 @@ function(own_program target)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF)
 endfunction()
 
-# part_left_out(<part> <package>): says why a part is not built, and what would help.
+# part_left_out(<part> <package>): reports a part that is not built and the package that it needs.
 function(part_left_out part package)
-  message(STATUS "motiongan: ${part} left out; on Debian they need: apt-get install ${package}")
+  message(STATUS "motiongan: ${part} not built: ${package} is missing; on Debian: apt-get install ${package}")
 endfunction()

@@ -1,15 +1,15 @@
-# Every tests/**/*_test.cpp is one program; all of them share one doctest main (tests/main.cpp).
+# Every tests/**/*_test.cpp is a program; all of them share one doctest main (tests/main.cpp).
 find_package(doctest QUIET)
 if(NOT doctest_FOUND)
   part_left_out("the tests are" doctest-dev)
   return()
 endif()
 
-# As an object library: a static one would let the linker leave the main out.
+# An object library, because the linker may drop main() from a static library.
 add_library(test_main OBJECT "${PROJECT_SOURCE_DIR}/tests/main.cpp")
 target_link_libraries(test_main PUBLIC doctest::doctest)
 
-# own_test(<name> <label> <command>...): registers with CTest what all tests have in common.
+# own_test(<name> <label> <command>...): registers a test with the label and the common time limit.
 function(own_test name label)
   add_test(NAME ${name} COMMAND ${ARGN})
   set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT 600)
@@ -27,7 +27,7 @@ foreach(source IN LISTS sources)
   set(target "${folder}_${name}")
   own_program(${target} "${source}")
   target_link_libraries(${target} PRIVATE test_main)
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)   # a quarter less to compile, and none runs long
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)   # compiles in three quarters of the time, and none runs long
   target_compile_definitions(${target} PRIVATE MOTIONGAN_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
   own_test(${target} ${folder} ${target})
@@ -37,21 +37,21 @@ foreach(source IN LISTS sources)
   endif()
 endforeach()
 
-# Two translation units that include everything: a function that lacks `inline` does not link.
+# Two translation units that include the whole library: a function without `inline` fails to link.
 file(GLOB umbrella CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/include/motiongan.hpp")
 if(umbrella)
   own_program(second_unit "${PROJECT_SOURCE_DIR}/tests/second_unit.cpp" "${PROJECT_SOURCE_DIR}/tests/second_unit_main.cpp")
   set_target_properties(second_unit PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
   own_test(second_unit tests second_unit)
 
-  # A project of somebody else's, built against an install tree.
+  # A separate project, built against an install tree.
   own_test(install_consumer install ${CMAKE_COMMAND}
     "-DBUILD_DIR=${PROJECT_BINARY_DIR}" "-DSOURCE_DIR=${PROJECT_SOURCE_DIR}/tests/install"
     "-DGENERATOR=${CMAKE_GENERATOR}" "-DCXX=${CMAKE_CXX_COMPILER}" "-DLAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}"
     -P "${PROJECT_SOURCE_DIR}/tests/install/run.cmake")
 endif()
 
-# motiongan-golden FILE...: compares the models with files that PyTorch wrote.
+# motiongan-golden FILE...: compares the models with reference files written by PyTorch.
 file(GLOB golden CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/golden/golden.cpp")
 if(golden)
   own_program(motiongan-golden ${golden})

@@ -14,8 +14,9 @@ int main() {
   bar.start(10);
   std::filesystem::remove_all("save");  // train() never overwrites a run
   train(model, data, {.iterations = 10, .critic_steps = 5, .batch = 16},
-        {.save_dir = "save", .report = [&](std::size_t iteration, const DvganLosses& losses) {
-           bar.update(iteration, {{"wasserstein", losses.wasserstein}, {"penalty", losses.penalty}});
+        {.save_dir = "save", .report = [&](std::size_t iteration, std::span<const NamedLoss> losses) {
+           bar.update(iteration, {{"wasserstein", loss_of(losses, "wasserstein")},
+                                  {"penalty", loss_of(losses, "penalty")}});
          }});
   bar.finish();
 

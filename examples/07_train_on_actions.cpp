@@ -13,16 +13,16 @@ int main() {
   std::printf("%zu clips for training, %zu for testing\n", data.train.size(), data.test.size());
 
   ActionGan model(ctx, data.format, {.hidden = 16});
-  train(model, data, AttentionTrainOptions{.iterations = 5, .critic_steps = 2, .batch = 8},
-        {.log_every = 5, .report = [](std::size_t iteration, const AttentionLosses& l) {
+  train(model, data, {.iterations = 5, .critic_steps = 2, .batch = 8},
+        {.log_every = 5, .report = [](std::size_t iteration, std::span<const NamedLoss> l) {
            std::printf("iteration %zu: wasserstein %.3f, skeleton %.3f, blend %.3f, accuracy %.2f\n",
-                       iteration, l.wasserstein, l.skeleton, l.blend, l.accuracy);
+                       iteration, loss_of(l, "wasserstein"), loss_of(l, "skeleton"), loss_of(l, "blend"),
+                       loss_of(l, "accuracy"));
          }});
   model.save("actions.safetensors");
 
   // A second of a real clip, then two and a half seconds of walking and one of running.
-  const std::vector<ActionPrior> priors{prior_from(clip_of(data, data.test.front()), data.format)};
-  const auto clips = generate(model, priors, parse_action_schedule("walk:2.5s,run:1s", data.format));
+  const auto clips = model.generate({data.prior(data.test.front())}, "walk:2.5s,run:1s");
   const motion::PositionClip& made = clips.front();
   std::printf("%zu frames, the first %zu of them given\n", made.frames, data.format.frames);
 

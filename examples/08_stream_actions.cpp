@@ -10,12 +10,12 @@ int main() {
       motion::procedural_motions({.clips = 68, .seconds = 4, .rate = 20}),
       {.frames = 10, .rate = 10, .pattern = "{label}_*", .classes = {"walk", "run", "jump"}});
   ActionGan model(ctx, data.format, {.hidden = 16, .noise_dim = 4});
-  train(model, data, AttentionTrainOptions{.iterations = 5, .critic_steps = 2, .batch = 8});
+  train(model, data, {.iterations = 5, .critic_steps = 2, .batch = 8});
 
   // Each continues a second of a clip; sample 7 has the same noise whichever characters are around it.
   std::vector<ActionPrior> priors;
   for (const motion::ActionClip& clip : data.train)
-    priors.push_back(prior_from(clip_of(data, clip), data.format));
+    priors.push_back(data.prior(clip));
   ActionStream stream(model);
   std::vector<ActionStream::Id> ids;
   for (std::uint32_t i = 0; i < 20; ++i) {

@@ -11,7 +11,7 @@ int main() {
 
   // A ranker scores how well a text fits a motion: R@k on the clips held out for testing.
   Ranker ranker(ctx, data.format, {.kind = RankerKind::rnn, .hidden = 32});
-  train(ranker, data, RankerTrainOptions{.iterations = 60, .batch = 16, .adam = {.learning_rate = 3e-3}});
+  train(ranker, data, {.iterations = 60, .batch = 16, .adam = {.learning_rate = 3e-3}});
   const RankerEvaluation known = evaluate_ranker(ranker, data);
   std::printf("R@1 %.1f%% of %zu descriptions, chance %.1f%%\n", known.retrieval.recall[0],
               known.retrieval.descriptions, random_recall(known.retrieval.descriptions)[0]);

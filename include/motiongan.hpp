@@ -1,4 +1,4 @@
-// motiongan: generative adversarial models of human motion over OpenCL. Everything, from the ground up.
+// motiongan: generative adversarial networks of human motion over OpenCL. Includes the whole library.
 #pragma once
 #include "motiongan/core/context.hpp"
 #include "motiongan/core/device.hpp"

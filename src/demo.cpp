@@ -1,4 +1,4 @@
-// motiongan demo: a small model trained on the built-in motion, and what it learnt, in minutes.
+// motiongan demo: trains a small model on the built-in motion for a few minutes and shows what it learnt.
 #include <algorithm>
 #include <fstream>
 
@@ -22,7 +22,7 @@ struct DemoArgs {
 
 constexpr const char* marker = "made by `motiongan demo`";
 
-/// An empty folder, made anew if an earlier demo made it; never somebody else's files.
+/// Makes `out` an empty folder. Throws Error if it has files that no earlier demo wrote.
 void renew(const fs::path& out) {
   const fs::path note = out / "README.txt";
   if (fs::exists(out) && !(fs::is_directory(out) && fs::is_empty(out))) {
@@ -30,16 +30,16 @@ void renew(const fs::path& out) {
     std::ifstream in(note);
     std::getline(in, first);
     require(first.starts_with(marker), out.string(),
-            " is there already and was not made by the demo; choose another --out");
+            " already exists and was not made by the demo; choose another --out");
     for (const auto& entry : fs::directory_iterator(out))
       if (entry.path() != note) fs::remove_all(entry.path());
   }
   make_folder(out);
-  motion::write_text_atomically(note, concat(marker, R"(, which renews this folder when it runs again
+  motion::write_text_atomically(note, concat(marker, R"(, which empties this folder when it runs again
 
 motions.html   real and generated motion side by side; open it in a browser
 poses.png      the same as rows of poses
-training.png   the Wasserstein estimate and the penalty over the training
+training.png   the Wasserstein estimate and the gradient penalty during training
 bvh/           the motions as BVH files
 save/          the run: model, checkpoint, log.csv
 )"));
@@ -89,7 +89,7 @@ motion::Motion first_window(const motion::Dataset& data, const motion::DatasetCl
   return data.to_motion(poses);
 }
 
-/// A clip of each of some actions that look different from one another.
+/// One clip each of a few actions that look different from one another.
 std::vector<const motion::DatasetClip*> clips_to_show(const motion::Dataset& data) {
   std::vector<const motion::DatasetClip*> out;
   for (const std::string action : {"walk_", "run_", "jump_", "squat_", "kick_", "wave_"})
@@ -101,7 +101,7 @@ std::vector<const motion::DatasetClip*> clips_to_show(const motion::Dataset& dat
   return out;
 }
 
-/// Writes BVH, page and picture: for each caption the real clip and two generated ones.
+/// Writes BVH files, a page and a picture: for each caption the real clip and two generated motions.
 void write_motions(const Dvgan& model, const motion::Dataset& data, const fs::path& out) {
   constexpr double rate = 30;
   make_folder(out / "bvh");
@@ -136,18 +136,18 @@ motion::StatisticsComparison compare_with_real(const Dvgan& model, const motion:
   return motion::compare(motion::measure(made), motion::measure(real));
 }
 
-/// What happened, in plain words.
+/// Prints an assessment of the training in plain language.
 void judge(const CsvTable& log, const motion::StatisticsComparison& c) {
   const std::vector<double> wasserstein = log.column("wasserstein"), iteration = log.column("iteration");
   const CurveSummary w = summarise(wasserstein);
-  fmt::print("\nwhat it saw\n");
+  fmt::print("\nassessment\n");
   fmt::print("  The Wasserstein estimate rose to {} by iteration {:.0f}, and ended at {}", brief(w.peak, 3),
              iteration[w.peak_at], brief(w.last, 3));
   const bool fell = w.last < 0.9 * w.peak;
   fmt::print("{}\n", fell ? ", as it should: up quickly, then down slowly." : ": it has not fallen yet.");
-  fmt::print("  Spread of the joints' angles, generated over real: {} (1 would be the same).\n",
+  fmt::print("  Spread of the joint angles, generated / real: {} (ideally 1).\n",
              brief(c.median_spread_ratio, 3));
-  fmt::print("  Speed of the joints, generated over real: {}.\n", brief(c.mean_speed_ratio, 3));
+  fmt::print("  Speed of the joints, generated / real: {}.\n", brief(c.mean_speed_ratio, 3));
   fmt::print("  {}% of the generated angles lie outside the range of the real clips.\n",
              brief(100 * c.values_outside, 3));
   std::vector<std::string> doubts;
@@ -155,26 +155,26 @@ void judge(const CsvTable& log, const motion::StatisticsComparison& c) {
   if (!(c.median_spread_ratio > 0.5)) doubts.emplace_back("the motion varies too little");
   if (!(c.median_spread_ratio < 1.6)) doubts.emplace_back("the motion varies too much");
   if (!(c.mean_speed_ratio > 0.5)) doubts.emplace_back("it moves too slowly");
-  if (!(c.mean_speed_ratio < 1.8)) doubts.emplace_back("it moves too fast, which looks like trembling");
-  if (!(c.values_outside < 0.1)) doubts.emplace_back("many poses are not like real ones");
+  if (!(c.mean_speed_ratio < 1.8)) doubts.emplace_back("it moves too fast, which looks like jitter");
+  if (!(c.values_outside < 0.1)) doubts.emplace_back("many poses are unlike real ones");
   if (doubts.empty()) {
-    fmt::print("  That looks healthy for so short a training. More of it makes the motion better.\n");
+    fmt::print("  That looks healthy for such a short training run. Longer training improves the motion.\n");
   } else {
     std::string list;
     for (const std::string& doubt : doubts) list += (list.empty() ? "" : "; ") + doubt;
-    fmt::print("  Not there yet: {}. More training should help (--minutes 10).\n", list);
+    fmt::print("  Not there yet: {}. Longer training should help (--minutes 10).\n", list);
   }
 }
 
 int run_demo(const DemoArgs& demo) {
   const fs::path out = demo.out;
-  const Context context;  // first of all: without a device nothing is touched
+  const Context context;  // first, so that nothing is touched without a device
   renew(out);
   fmt::print("1. data\n");
   DvganArgs args = demo_options();
   const motion::Dataset data = load_data(args);
   print_data(data, args);
-  fmt::print("\n2. training for {} (Ctrl-C: stop earlier and go on)\n", duration(60 * demo.minutes));
+  fmt::print("\n2. training for {} (Ctrl-C stops early and continues with step 3)\n", duration(60 * demo.minutes));
   Dvgan model(context, data.format, args.model);
   print_model(model);
   const RunResult result = train_for(demo.minutes, model, data, args, out / "save");
@@ -183,11 +183,11 @@ int run_demo(const DemoArgs& demo) {
   write_motions(model, data, out);
   const CsvTable log = read_csv_log(RunFiles{out / "save"}.log());
   write_png(out / "training.png", plot_log(log, "motiongan demo"));
-  fmt::print("wrote {}: the course of the training\n", (out / "training.png").string());
+  fmt::print("wrote {}: the training curves\n", (out / "training.png").string());
   judge(log, compare_with_real(model, data));
 
   const std::string save = (out / "save").string();
-  fmt::print("\nlook at {} in a browser\n", fs::absolute(out / "motions.html").lexically_normal().string());
+  fmt::print("\nopen {} in a browser\n", fs::absolute(out / "motions.html").lexically_normal().string());
   fmt::print("\nmore from this model\n");
   fmt::print("  {} generate {} --text \"{}\" --count 4 --rate 30 --html more.html\n", program(), save,
              clips_to_show(data).front()->captions.front());
@@ -200,12 +200,13 @@ int run_demo(const DemoArgs& demo) {
 
 const Verb demo_verb{"demo", [](CLI::App& app, Job& job) {
   CLI::App* verb = app.add_subcommand(
-      "demo", "Train a small model on built-in motion, then show what it learnt: BVH, a page, pictures");
+      "demo",
+      "Train a small model on built-in motion and show the result: BVH files, an HTML page, pictures");
   const auto args = std::make_shared<DemoArgs>();
-  verb->add_option("--minutes", args->minutes, "of training")
+  verb->add_option("--minutes", args->minutes, "training time in minutes")
       ->capture_default_str()
       ->check(CLI::Range(0.001, 1e5));
-  verb->add_option("--out", args->out, "folder to write to; renewed if an earlier demo made it")
+  verb->add_option("--out", args->out, "folder to write to; emptied first if an earlier demo made it")
       ->capture_default_str()
       ->type_name("DIR");
   verb->callback([&job, args] { job = [args] { return run_demo(*args); }; });

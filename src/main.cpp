@@ -1,4 +1,5 @@
-// The motiongan command: one verb after another, each in a file of its own.
+// The motiongan command: parses the command line and runs the verb. Each verb registers itself from its own
+// file.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -11,7 +12,7 @@
 namespace motiongan::command {
 namespace {
 
-/// CLI11's help, without the notes on what a negated flag is worth.
+/// CLI11's help without the "{false}" notes on negated flags.
 class Help : public CLI::Formatter {
  public:
   std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
@@ -24,9 +25,9 @@ class Help : public CLI::Formatter {
 
 int run(int argc, char** argv) {
   CLI::App app(
-      "motiongan trains GANs on motion clips and their captions or classes, and makes new motion for a "
-      "text\nor a class.\n"
-      "`motiongan VERB --help` lists the options of a verb; `motiongan demo` shows all of it in minutes.");
+      "motiongan trains GANs on motion clips with captions or class labels, and generates new motion for a\n"
+      "text or a class.\n"
+      "`motiongan VERB --help` lists the options of a verb; `motiongan demo` is a tour of a few minutes.");
   app.name("motiongan");
   app.set_version_flag("--version", "motiongan " MOTIONGAN_VERSION);
   app.require_subcommand(1);
@@ -38,14 +39,14 @@ int run(int argc, char** argv) {
          [](const std::string& wish) {
            require(setenv("MOTIONGAN_DEVICE", wish.c_str(), 1) == 0, "cannot set MOTIONGAN_DEVICE");
          },
-         "OpenCL device: cpu, gpu, a part of its name, or NAME:index (as MOTIONGAN_DEVICE; see `motiongan "
-         "devices`)")
-      ->type_name("WISH");
+         "OpenCL device: cpu, gpu, part of its name, or NAME:index (overrides MOTIONGAN_DEVICE; see "
+         "`motiongan devices`)")
+      ->type_name("DEVICE");
   Job job;
   std::map<std::string, CLI::App*> groups;
   for (const auto& [name, description] : {std::pair{"train", "Train a model on motion clips with captions or classes"},
-                                          {"ablate", "Compare a model with itself without each of its parts"},
-                                          {"evaluate", "Measure models and motion as the papers do"}}) {
+                                          {"ablate", "Train a model with and without each of its parts, and compare"},
+                                          {"evaluate", "Evaluate models and motion with the papers' metrics and others"}}) {
     groups[name] = app.add_subcommand(name, description);
     groups[name]->require_subcommand(1);
   }
@@ -66,7 +67,7 @@ int run(int argc, char** argv) {
 }  // namespace motiongan::command
 
 int main(int argc, char** argv) {
-  // Lines appear when they are written, also between the lines of the progress bar in a file.
+  // Line-buffered, so that stdout and the progress on stderr keep their order when both go to one file.
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   if (argc > 0 && *argv[0] != '\0') motiongan::command::program() = argv[0];
   try {

@@ -1,4 +1,4 @@
-// motiongan ablate attention: the second paper's model beside itself without each of its parts.
+// motiongan ablate attention: trains the attention model with and without each of its parts, and compares.
 #include "ablate/ablate_attention.hpp"
 
 #include "shared/action_data.hpp"
@@ -18,8 +18,8 @@ struct AblateArgs {
   EvaluationOptions evaluation;
 };
 
-/// All that a variant's checkpoint keeps of its options, by the names that `train attention` gives them, so that
-/// generate and info understand a variant's folder as any other run's.
+/// The options stored in a variant's checkpoint, named as in `train attention`, so that generate and info
+/// read a variant's folder like that of any other run.
 FieldList kept_fields(ActionDataArgs& data, ActionGanOptions& model, AttentionTrainOptions& training) {
   FieldList list;
   data.list_fields(list);
@@ -34,8 +34,8 @@ RunNotes notes_of(AblateArgs args, const AblationVariant& variant) {
   return {{"options", note_of(kept_fields(args.data, model, training))}};
 }
 
-/// Takes data and options of a comparison that is there from its first variant that says; a variant's own
-/// parts and weights are those of the comparison only in `full`.
+/// Takes data and options from the first variant of an existing comparison that stores them, except for the
+/// parts and weights that this variant changes.
 void take_options_of(AblateArgs& args, const CLI::App& verb) {
   for (const AblationVariant& variant : ablation_variants()) {
     const fs::path checkpoint = RunFiles{fs::path(args.save) / variant.name}.checkpoint();
@@ -73,7 +73,7 @@ int run_ablation(AblateArgs args, const CLI::App& verb) {
   const motion::ActionDataset data = load_data(args.data);
   print_data(data, args.data);
   print_fact("device", describe(context.device()));
-  // Windows that the test clips do not hold are refused now, not after hours of training.
+  // Fails now, not after hours of training, if no test clip is long enough for a window.
   choose_windows(data, args.evaluation.frames, args.evaluation.windows, args.evaluation.seed);
   if (!args.evaluate_only) {
     print_saved_to(args.save, args.training.budget.save_every_minutes);
@@ -92,20 +92,17 @@ void add_training_options(CLI::App& verb, AblationTraining& a) {
   add_options(verb, fields_of(a.model), group, {.only = {"hidden"}});
   add_options(verb, fields_of(a.training), group,
               {.without = {"iterations", "weight_clip", "skeleton_vectors", "critic_classes", "balanced"}});
-  // What a variant lacks cannot be off in all of them.
+  // A loss that a variant leaves out must be on in the others.
   for (const char* name : {"--skeleton-weight", "--blend-weight"}) verb.get_option(name)->check(positive());
 }
 
 const Verb ablate_attention_verb{"ablate attention", [](CLI::App& ablate, Job& job) {
   CLI::App* verb = ablate.add_subcommand(
       "attention",
-      "Train the attention WGAN-GP, the same without attention, blend loss, skeleton loss, and the LSTM, "
-      "each as "
-      "long,\n"
-      "and measure what they make of test clips: table.csv, angles.csv, angles.png and strips of poses in "
-      "--save.\n"
-      "Every variant has a folder of its name there. Ctrl-C saves and stops; the same command goes on, and "
-      "trains nothing twice.");
+      "Train the attention WGAN-GP, its variants without attention, blend loss or skeleton loss, and the\n"
+      "LSTM baseline, all with the same budget, and measure them on test clips: table.csv, angles.csv,\n"
+      "angles.png and strips of poses in --save. Every variant has its own folder there. Ctrl-C saves and\n"
+      "stops; the same command continues, and trains nothing twice.");
   const auto args = std::make_shared<AblateArgs>();
   AblateArgs& a = *args;
   a.training.budget.minutes = 20;
@@ -113,18 +110,18 @@ const Verb ablate_attention_verb{"ablate attention", [](CLI::App& ablate, Job& j
   verb->add_option("--save", a.save, "folder of the comparison")->required()->type_name("DIR");
   std::string names;
   for (const AblationVariant& v : ablation_variants()) names += concat(names.empty() ? "" : ", ", v.name);
-  verb->add_option("--variants", a.variants, "only these [all]: " + names)->delimiter(',')->type_name("A,B");
-  verb->add_flag("--evaluate-only", a.evaluate_only, "train nothing; take the models that are there");
+  verb->add_option("--variants", a.variants, "variants to train and measure [all]: " + names)->delimiter(',')->type_name("A,B");
+  verb->add_flag("--evaluate-only", a.evaluate_only, "train nothing; measure the existing models");
   add_training_options(*verb, a.training);
   const auto option = [&](const char* name, auto& member, const char* text) {
     return verb->add_option(name, member, text)->capture_default_str()->group("Evaluation");
   };
-  option("--windows", a.evaluation.windows, "at most so many priors, all classes in turn")->check(positive());
+  option("--windows", a.evaluation.windows, "at most this many priors, cycling through the classes")->check(positive());
   option("--future", a.evaluation.frames, "frames after each prior that are compared; the paper: 70")
       ->check(positive());
-  option("--window-seed", a.evaluation.seed, "which windows")->check(not_negative());
+  option("--window-seed", a.evaluation.seed, "seed that selects the windows")->check(not_negative());
   verb->add_option("--unit-metres", a.unit_metres,
-                   "size of the clips' unit: lengths are given in metres (CMU 0.05644, Bandai-Namco 0.01)")
+                   "metres per unit of the clips, to print lengths in metres (CMU 0.05644, Bandai-Namco 0.01)")
       ->check(positive())
       ->group("Evaluation");
   verb->callback([&job, args, verb] {

@@ -1,4 +1,4 @@
-// What the parts of `motiongan ablate attention` share.
+// Shared by the parts of `motiongan ablate attention`.
 #pragma once
 #include "shared/command.hpp"
 #include "motiongan/experiments/action_ablation.hpp"
@@ -8,26 +8,26 @@
 
 namespace motiongan::command {
 
-/// What is trained, and for how long each.
+/// What is trained, and for how long.
 struct AblationTraining {
   ActionGanOptions model;
   AttentionTrainOptions training;
   TrainingBudget budget;
 };
 
-/// The note of a variant's options that its checkpoint keeps.
+/// Makes the notes that a variant's checkpoint stores: its options.
 using VariantNotes = std::function<RunNotes(const AblationVariant&)>;
 
-/// Trains the variants that are not done yet, one after the other, each in a folder of its name in `save`.
-/// One that has had a part of its budget goes on. One that diverges is told and left as it was last saved.
-/// Returns whether all are done: not if a signal stopped it.
+/// Trains the variants that have not used up their budget, one after the other, each in save/NAME; one that
+/// has used part of it continues. If one diverges, that is printed and it stays as it was last saved. Returns
+/// false if a signal stopped it.
 bool train_variants(const Context& context, const motion::ActionDataset& data, const fs::path& save,
                     const std::vector<const AblationVariant*>& variants, const AblationTraining& training,
                     const VariantNotes& notes);
 
 struct AblationReport {
   EvaluationOptions evaluation;
-  double unit_metres = 0;  ///< size of the file's unit; 0: not known
+  double unit_metres = 0;  ///< metres per unit of the clips; 0: unknown
   bool all_must_be_there = false;
 };
 

@@ -1,4 +1,4 @@
-// motiongan ablate: what the variants make, measured and drawn.
+// motiongan ablate attention: measures the variants and draws their motion.
 #include <algorithm>
 
 #include "ablate/ablate_attention.hpp"
@@ -11,8 +11,8 @@ namespace {
 
 constexpr double long_seconds = 30;
 
-/// Positions as a motion whose figure is just those points: nothing is fitted, stretched bones are seen. End
-/// sites, whose places are not known, are left out.
+/// Positions as a motion that draws exactly these points: nothing is fitted, so stretched bones show. End
+/// sites, whose positions are unknown, are left out.
 motion::Motion as_drawn(const motion::Skeleton& skeleton, double rate,
                         std::span<const motion::Vec3> positions) {
   motion::Motion out;
@@ -32,8 +32,8 @@ motion::Motion as_drawn(const motion::Skeleton& skeleton, double rate,
   return out;
 }
 
-/// The positions with those that are far from any body brought near, and whether there were any: a model that
-/// falls apart makes limbs of a hundred metres, which no picture can hold.
+/// Clamps positions that are far from any plausible body, and returns whether there were any: a model that
+/// diverges makes limbs of a hundred metres, which no picture can show.
 bool bring_near(const motion::Skeleton& skeleton, std::size_t prior_frames,
                 std::vector<motion::Vec3>& positions) {
   const std::size_t joints = skeleton.size();
@@ -42,7 +42,7 @@ bool bring_near(const motion::Skeleton& skeleton, std::size_t prior_frames,
   for (std::size_t i = 0; i < prior_frames * joints; ++i) floor = std::min(floor, positions[i][1]);
   bool any = false;
   const auto bring = [&](double& value, double low, double high) {
-    const double near = value >= low ? std::min(value, high) : low;  // a value that is no number is low too
+    const double near = value >= low ? std::min(value, high) : low;  // NaN counts as low
     any = any || near != value;
     value = near;
   };
@@ -58,7 +58,7 @@ bool bring_near(const motion::Skeleton& skeleton, std::size_t prior_frames,
   return any;
 }
 
-/// Rows of poses for both pictures: of each class the window that is followed by the most real frames.
+/// Rows of poses for both pictures: for each class, the window followed by the most real frames.
 class Strips {
  public:
   Strips(const motion::ActionDataset& data, const ActionEvaluation& evaluation) : data_(data) {
@@ -76,18 +76,18 @@ class Strips {
       windows_.push_back(*best);
       titles_.push_back(data.format.classes[c]);
       rows_.emplace_back();
-      add(rows_.size() - 1, "the real clip " + clip.id,
+      add(rows_.size() - 1, "real clip " + clip.id,
           data.format.restore(std::span<const float>(clip.poses).subspan(w.start * data.format.dof()),
                               std::span(clip.places).subspan(w.start)));
     }
   }
 
-  /// Adds what a variant made of all windows.
+  /// Adds the motion that a variant generated for all windows.
   void add(std::string_view title, const std::vector<std::vector<motion::Vec3>>& all) {
     for (std::size_t i = 0; i < windows_.size(); ++i) add(i, title, all[windows_[i]]);
   }
 
-  /// Prior and `seconds` after it; a real clip that ends before that is drawn to its end.
+  /// Draws the prior and `seconds` after it; a real clip that ends sooner is drawn to its end.
   void write(const fs::path& path, double seconds) const {
     const auto frames =
         data_.format.frames + static_cast<std::size_t>(std::lround(seconds * data_.format.rate));
@@ -111,7 +111,7 @@ class Strips {
   void add(std::size_t row, std::string_view title, std::vector<motion::Vec3> positions) {
     const bool left = bring_near(data_.format.skeleton(), data_.format.frames, positions);
     rows_[row].push_back(
-        {fmt::format("{}: {}{}", titles_[row], title, left ? ", cut where it leaves the picture" : ""),
+        {fmt::format("{}: {}{}", titles_[row], title, left ? ", clamped to the picture" : ""),
          as_drawn(data_.format.skeleton(), data_.format.rate, positions), data_.format.frames});
   }
 
@@ -132,9 +132,9 @@ void print_windows(const ActionEvaluation& evaluation) {
     if (w.per_class[c] == 0) none += (none.empty() ? "" : ", ") + classes[c];
   }
   fmt::print(
-      "\nmeasured on test clips: {}\n{} of {} last the {} frames that a prior and what follows it need\n",
+      "\nmeasured on test clips: {}\n{} of {} have the {} frames that a prior and its future need\n",
       each, w.long_clips, counted(w.clips, "test clip"), length);
-  if (!none.empty()) fmt::print("no test clip of {} lasts that long: nothing is said of it\n", none);
+  if (!none.empty()) fmt::print("no test clip of {} is that long: not measured\n", none);
 }
 
 void print_tables(const ActionEvaluation& evaluation, std::span<const AblationResult> results, bool metres) {
@@ -163,31 +163,27 @@ void print_tables(const ActionEvaluation& evaluation, std::span<const AblationRe
   };
   add({"truth", evaluation.truth()}, "");
   for (const AblationResult& r : results)
-    add(r, r.name == "still" ? "(not in it: the last pose held)" : ablation_variant(r.name).paper);
+    add(r, r.name == "still" ? "(not in the paper: the last pose, held)" : ablation_variant(r.name).paper);
   fmt::print(
-      "\nangle between adjacent bones over the {} frames after the prior, in degrees: how far its mean curve "
-      "is "
-      "from\nthe truth's (all frames, first second, last second), and each window from its own truth (+- "
-      "between "
-      "windows)\n",
+      "\nangle between adjacent bones over the {} frames after the prior, in degrees: error of the mean\n"
+      "curve (all frames, first second, last second), and of each window against its own ground truth\n"
+      "(+- between windows)\n",
       evaluation.truth().angles.size());
   print_table({"", "iterations", "curve", "first s", "last s", "window", "the paper says"}, angles, "lrrrrrl",
               "  ");
   const std::string small = metres ? " mm" : "", large = metres ? " m" : "";
   fmt::print(
-      "\nmotion{}: how far bones are from their length in the prior; mean step of the joints where seconds "
-      "meet\n"
-      "(seam; body: without the root's step), median step anywhere, speed of the root. The same over {} s, "
-      "with how\n"
-      "far the root got, and the share of motions whose bones are off by more than 100% in the last second: "
-      "broken\n",
+      "\nmotion{}: error of the bone lengths against the prior; mean step of the joints between seconds\n"
+      "(seam; body: without the root's step), median step anywhere, speed of the root. The same over {} s,\n"
+      "with the distance of the root from its start, and broken: percentage of motions whose bones are off\n"
+      "by more than 100% in the last second\n",
       metres ? "" : " (lengths in the file's unit; --unit-metres gives metres)", brief(long_seconds));
   print_table({"", "bones %", "seam" + small, "body" + small, "step" + small, "speed" + large + "/s",
                "30 s: bones %", "step" + small, "speed" + large + "/s", "from start" + large, "broken"},
               motions, "lrrrrrrrrrr", "  ");
 }
 
-/// How many iterations a run's model has had; 0 where its checkpoint is not there.
+/// Iterations that a run's model was trained for; 0 if there is no checkpoint.
 std::size_t iterations_of(const fs::path& folder) {
   const fs::path checkpoint = RunFiles{folder}.checkpoint();
   return fs::exists(checkpoint) ? read_run_record(checkpoint).iteration : 0;
@@ -222,15 +218,14 @@ void report_variants(const Context& context, const motion::ActionDataset& data, 
     }
     const ActionGan model = ActionGan::load(context, file);
     require(io::to_json(model.format()).dump() == own_format, file.string(),
-            ": this model was trained on other data (other clips, labels, split or pose); its test clips "
-            "cannot be "
-            "told from what it was trained on. Give the folder and the options of its training");
+            ": this model was trained on other data (other clips, labels, split or pose), and may know these "
+            "test clips; give the original folder and options");
     measure(variant->name, variant->title, future_maker(model));
     results.back().iterations = iterations_of(save / variant->name);
   }
   require(!results.empty(), "there is no model in ", save.string(),
           ": none of the variants has been trained");
-  if (!missing.empty()) fmt::print("not there, left out: {}\n", missing);
+  if (!missing.empty()) fmt::print("not trained, left out: {}\n", missing);
 
   make_folder(save);
   const std::vector<AblationClaim> claims = judge_claims(results, metres);
@@ -253,7 +248,7 @@ void report_variants(const Context& context, const motion::ActionDataset& data, 
 
   print_tables(evaluation, results, metres);
   if (!claims.empty())
-    fmt::print("\nis it as the paper says? (one training of each, one seed; even: within 10%)\n");
+    fmt::print("\ndoes it agree with what the paper says? (one run each, one seed; even: within 10%)\n");
   for (const AblationClaim& claim : claims)
     fmt::print("  {:<4} {} ({})\n",
                claim.verdict == Verdict::yes  ? "yes"

@@ -1,4 +1,4 @@
-// motiongan ablate: training the variants, each with the same budget.
+// motiongan ablate attention: trains the variants, all with the same budget.
 #include "ablate/ablate_attention.hpp"
 #include "shared/signals.hpp"
 
@@ -11,7 +11,7 @@ bool train_variants(const Context& context, const motion::ActionDataset& data, c
     const std::string name(variant->name);
     const fs::path folder = save / name;
     if (has_had(folder, training.budget)) {
-      fmt::print("{}: is trained already\n", name);
+      fmt::print("{}: already trained\n", name);
       continue;
     }
     make_folder(folder);

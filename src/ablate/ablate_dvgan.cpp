@@ -1,5 +1,5 @@
-// motiongan ablate dvgan: generators, critics, validation, shift and cut, trained alike and measured by a
-// ranker.
+// motiongan ablate dvgan: trains variants of generator, critic, validation, shift and cut alike, and measures
+// them with a ranker.
 #include "ablate/ablate_dvgan.hpp"
 
 #include "train/ranking.hpp"
@@ -17,7 +17,7 @@ struct AblateDvganArgs : DvganArgs {
   std::vector<std::string> variants;
   std::size_t seeds = 3;
   std::string ranker;
-  RankerArgs ranking;  // of the ranker that is trained where none is given
+  RankerArgs ranking;  // options of the ranker that is trained if none is given
   bool evaluate_only = false;
   ModelEvaluationOptions evaluation;
 };
@@ -38,8 +38,8 @@ std::vector<DvganVariant> asked_variants(const std::vector<std::string>& names) 
   return out;
 }
 
-/// The options of one training, by the names that `train dvgan` gives them, so that generate, info and
-/// --resume understand its folder as any other run's.
+/// The options of one run, named as in `train dvgan`, so that generate, info and --resume read its folder
+/// like that of any other run.
 DvganArgs training_of(const DvganArgs& all, const DvganVariant& variant, std::uint64_t seed) {
   DvganArgs args = all;
   args.model = variant.model(args.model);
@@ -49,7 +49,7 @@ DvganArgs training_of(const DvganArgs& all, const DvganVariant& variant, std::ui
   return args;
 }
 
-/// Takes data and options of a comparison that is there from its first training that says.
+/// Takes data and options from the first run of an existing comparison that stores them.
 void take_options_of(AblateDvganArgs& args, const CLI::App& verb, const std::vector<DvganVariant>& variants,
                      const std::vector<std::uint64_t>& seeds) {
   for (const DvganVariant& variant : variants)
@@ -68,16 +68,16 @@ void take_options_of(AblateDvganArgs& args, const CLI::App& verb, const std::vec
     }
 }
 
-/// Whether all were trained; not if a signal stopped it.
+/// Returns false if a signal stopped it.
 bool train_variants(const Context& context, const motion::Dataset& data, const AblateDvganArgs& all,
                     const std::vector<DvganVariant>& variants, const std::vector<std::uint64_t>& seeds) {
-  // Seed by seed: a comparison that is stopped early has all variants with fewer seeds.
+  // Seed by seed, so that a comparison stopped early has all variants, with fewer seeds.
   for (const std::uint64_t seed : seeds)
     for (const DvganVariant& variant : variants) {
       const fs::path folder = folder_of(all.save, variant, seed);
       const std::string name = variant.name() + " " + folder.filename().string();
       if (has_had(folder, all.budget)) {
-        fmt::print("{}: is trained already\n", name);
+        fmt::print("{}: already trained\n", name);
         continue;
       }
       make_folder(folder);
@@ -95,7 +95,7 @@ bool train_variants(const Context& context, const motion::Dataset& data, const A
   return true;
 }
 
-/// The ranker that was given, or that of the comparison, trained where it is not there yet. Null if a signal
+/// The ranker of --ranker, or that of the comparison, which is trained first if missing. Nothing if a signal
 /// stopped it.
 std::optional<Ranker> get_ranker(const Context& context, const motion::Dataset& data, AblateDvganArgs& args) {
   if (!args.ranker.empty()) return Ranker::load(context, ranker_file(args.ranker));
@@ -130,14 +130,14 @@ int run_ablation(AblateDvganArgs args, const CLI::App& verb) {
   if (args.folder.empty() && args.procedural == 0) take_options_of(args, verb, variants, seeds);
   require(!args.folder.empty() || args.procedural > 0,
           "there is nothing to compare on: give a folder of BVH clips, or --procedural");
-  // One form of the data for all of them.
+  // All variants use the same representation of the root's rotation.
   fill_in_data(args, motion::RootRotation::heading);
-  for (const DvganVariant& variant : variants) training_of(args, variant, seeds.front());  // refuses early
+  for (const DvganVariant& variant : variants) training_of(args, variant, seeds.front());  // throws early
 
   const Context context;
   const motion::Dataset data = load_data(args);
   print_data(data, args);
-  require(!data.test.empty(), "no clip is kept for testing; lower --train-share");
+  require(!data.test.empty(), "no clip is held out for testing; lower --train-share");
   print_fact("device", describe(context.device()));
   print_fact("variants", fmt::format("{}, {} each", variants.size(), counted(seeds.size(), "seed")));
   if (!args.evaluate_only) {
@@ -154,10 +154,10 @@ int run_ablation(AblateDvganArgs args, const CLI::App& verb) {
 const Verb ablate_dvgan_verb{"ablate dvgan", [](CLI::App& ablate, Job& job) {
   CLI::App* verb = ablate.add_subcommand(
       "dvgan",
-      "Train generators and critics, with and without dense validation, input shift and final cut, each as "
-      "long\nand with several seeds, and measure what they make by a ranker: the paper's Tables 2 and S1, on "
-      "your clips.\nEvery training has a folder of its own in --save, VARIANT/seed-N. Ctrl-C saves and "
-      "stops; the same command goes on,\nand trains nothing twice.");
+      "Train generators and critics with and without dense validation, input shift and final cut, all with "
+      "the\nsame budget and several seeds, and measure them with a ranker: Lin & Amer, Tables 2 and S1, on "
+      "your clips.\nEvery run has its own folder in --save, VARIANT/seed-N. Ctrl-C saves and stops; the same "
+      "command continues,\nand trains nothing twice.");
   const auto args = std::make_shared<AblateDvganArgs>();
   AblateDvganArgs& a = *args;
   a.variants = {"paper"};
@@ -171,19 +171,19 @@ const Verb ablate_dvgan_verb{"ablate dvgan", [](CLI::App& ablate, Job& job) {
       ->delimiter(',')
       ->capture_default_str()
       ->type_name("A,B");
-  verb->add_option("--seeds", a.seeds, "trainings of each variant")->check(positive())->capture_default_str();
-  verb->add_option("--seed", a.training.seed, "the first of them")
+  verb->add_option("--seeds", a.seeds, "number of seeds for each variant")->check(positive())->capture_default_str();
+  verb->add_option("--seed", a.training.seed, "first seed")
       ->check(not_negative())
       ->capture_default_str();
-  verb->add_flag("--evaluate-only", a.evaluate_only, "train nothing; take the models that are there");
-  add_budget_options(*verb, a.budget, "for each training", "Training");
+  verb->add_flag("--evaluate-only", a.evaluate_only, "train nothing; measure the existing models");
+  add_budget_options(*verb, a.budget, "for each run", "Training");
   add_options(*verb, fields_of(a.model), "Model", {.only = {"hidden", "taps"}});
   add_options(*verb, fields_of(a.training), "Training",
               {.without = {"iterations", "seed", "critic", "validation", "input_shift", "completion_share"}});
   const auto option = [&](const char* name, auto& member, const char* text) {
     return verb->add_option(name, member, text)->capture_default_str()->group("Evaluation");
   };
-  verb->add_option("--ranker", a.ranker, "folder of a run of `train ranker` [one is trained in --save]")
+  verb->add_option("--ranker", a.ranker, "folder of a `train ranker` run [one is trained in --save]")
       ->type_name("DIR")
       ->group("Evaluation");
   verb->add_option_function<std::string>(
@@ -191,17 +191,17 @@ const Verb ablate_dvgan_verb{"ablate dvgan", [](CLI::App& ablate, Job& job) {
           [&a](const std::string& name) {
             a.ranking.model.kind = enum_from<RankerKind>(name, "--ranker-kind");
           },
-          "of the one that is trained")
+          "kind of the ranker that is trained")
       ->check(CLI::IsMember({"cnn", "rnn"}))
       ->default_str(name_of(a.ranking.model.kind))
       ->group("Evaluation");
-  option("--ranker-hidden", a.ranking.model.hidden, "its width")->check(positive());
-  option("--ranker-iterations", a.ranking.training.iterations, "how long it is trained")->check(positive());
-  option("--descriptions", a.evaluation.descriptions, "K: the most popular ones of the test clips, at most")
+  option("--ranker-hidden", a.ranking.model.hidden, "width of that ranker")->check(positive());
+  option("--ranker-iterations", a.ranking.training.iterations, "training iterations of that ranker")->check(positive());
+  option("--descriptions", a.evaluation.descriptions, "K: at most this many, the most frequent ones of the test clips")
       ->check(positive());
-  option("--samples", a.evaluation.samples, "motions of each description, made and real")
+  option("--samples", a.evaluation.samples, "motions of each description, generated and real")
       ->check(CLI::Range(std::size_t{2}, std::size_t{1'000'000}));
-  option("--evaluation-seed", a.evaluation.seed, "of the motions made")->check(not_negative());
+  option("--evaluation-seed", a.evaluation.seed, "seed of the generated motions")->check(not_negative());
   verb->callback([&job, args, verb] {
     fill_in_procedural(*verb, args->procedural);
     job = [args, verb] { return run_ablation(*args, *verb); };

@@ -1,17 +1,17 @@
-// What the parts of `motiongan ablate dvgan` share.
+// Shared by the parts of `motiongan ablate dvgan`.
 #pragma once
 #include "shared/command.hpp"
 #include "motiongan/experiments/dvgan_ablation.hpp"
 
 namespace motiongan::command {
 
-/// Folder of a variant's training with a seed.
+/// Folder of a variant's run with a seed.
 inline fs::path folder_of(const fs::path& save, const DvganVariant& variant, std::uint64_t seed) {
   return save / variant.name() / concat("seed-", seed);
 }
 
-/// Measures the models that are in `save`, prints the table and writes runs.csv (one line a training),
-/// table.csv (means and spreads) and table.md (the same, the paper's rows beside) there.
+/// Measures the models in `save`, prints the table and writes there runs.csv (one line per run), table.csv
+/// (means and standard deviations over seeds) and table.md (the same next to the paper's rows).
 void report_dvgan_variants(const Context& context, const motion::Dataset& data, const Ranker& ranker,
                            const fs::path& save, const std::vector<DvganVariant>& variants,
                            const std::vector<std::uint64_t>& seeds, const ModelEvaluationOptions& options);

@@ -1,4 +1,4 @@
-// motiongan ablate dvgan: measuring the trained variants, and the tables.
+// motiongan ablate dvgan: measures the trained variants and writes the tables.
 #include "ablate/ablate_dvgan.hpp"
 #include "motiongan/formats/text_file.hpp"
 #include "motiongan/train/run.hpp"
@@ -8,7 +8,7 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-/// The paper's columns: those that it has.
+/// The paper's columns; "-" if it has no such row.
 Row paper_cells(const paper::GeneratorRow* row) {
   if (row == nullptr) return Row(5, "-");
   Row out{fmt::format("{:.2f}", row->inception_score)};
@@ -38,8 +38,8 @@ Row head() {
   return out;
 }
 
-/// Real windows of the test clips, measured as the motions made; their FID is that of training clips'
-/// windows.
+/// Real windows of the test clips, measured like generated motion; their FID is that of windows of training
+/// clips.
 Row real_cells(const RealEvaluation& real) {
   Row out{"real", "-"};
   for (const AblationColumn& column : ablation_columns())
@@ -58,7 +58,7 @@ std::string markdown_line(const Row& row) {
   return out + "\n";
 }
 
-/// R@1 of one row against another, seed by seed.
+/// Prints the differences of R@1 and IS between two rows, paired by seed.
 void print_difference(const std::vector<DvganAblationRow>& rows, std::string_view a, std::string_view b) {
   const DvganAblationRow *from = nullptr, *to = nullptr;
   for (const DvganAblationRow& row : rows) {
@@ -73,7 +73,7 @@ void print_difference(const std::vector<DvganAblationRow>& rows, std::string_vie
   };
   const MeanStd recall = difference(1), score = difference(0);
   if (recall.count == 0) return;
-  fmt::print("{} over {}, seed by seed ({}): R@1 {:+.1f} ± {:.1f}, IS {:+.2f} ± {:.2f}\n", b, a,
+  fmt::print("{} over {}, paired by seed ({}): R@1 {:+.1f} ± {:.1f}, IS {:+.2f} ± {:.2f}\n", b, a,
              counted(recall.count, "pair"), recall.mean, recall.spread, score.mean, score.spread);
 }
 
@@ -121,12 +121,10 @@ void write_files(const fs::path& save, const std::vector<DvganAblationRow>& rows
   std::string text = fmt::format(
       "# Tables 2 and S1 on these clips\n\nMean ± standard deviation over seeds. K = {} descriptions of {} "
       "test "
-      "clips, {} motions of each variant. IS in nats (its exponential is what most papers print), R@k in per "
-      "cent, FID, diversity and multimodality in the ranker's embedding of length 1. The real row's FID is "
-      "that "
-      "of windows of training clips. The paper's rows, on the right, are of other clips, another K and "
-      "another "
-      "ranker: only the order of the rows can be compared.\n\n",
+      "clips, {} motions of each variant. IS in nats (its exponential is what most papers print), R@k in "
+      "percent, FID, diversity and multimodality in the ranker's embedding of unit length. The real row's "
+      "FID is that of windows of training clips. The paper's columns, on the right, are for other clips, "
+      "another K and another ranker: only the order of the rows can be compared.\n\n",
       k, real.clips, real.measures.motions);
   Row titles = head();
   for (const char* corpus : {"CMU", "H3.6M"})
@@ -171,7 +169,7 @@ void report_dvgan_variants(const Context& context, const motion::Dataset& data, 
       if (!fs::exists(files.generator())) continue;
       const Dvgan model = Dvgan::load(context, files.generator());
       ModelEvaluationOptions asked = options;
-      asked.drift_motions = 0;  // windows alone are compared here
+      asked.drift_motions = 0;  // only windows are compared here
       row.runs.push_back(
           {seed, read_run_record(files.checkpoint()).iteration, evaluate_model(model, ranker, real, asked)});
       budgets.push_back(row.runs.back().iterations);
@@ -179,7 +177,7 @@ void report_dvgan_variants(const Context& context, const motion::Dataset& data, 
     }
   }
   std::erase_if(rows, [](const DvganAblationRow& row) { return row.runs.empty(); });
-  require(!rows.empty(), save.string(), " holds none of the models asked for; train them first");
+  require(!rows.empty(), save.string(), " holds none of the requested models; train them first");
 
   const auto [least, most] = std::minmax_element(budgets.begin(), budgets.end());
   fmt::print("\nK = {} of {}, {} motions each; {} to {} iterations\n\n",
@@ -202,8 +200,8 @@ void report_dvgan_variants(const Context& context, const motion::Dataset& data, 
   lines.push_back(std::move(random));
   print_table(titles, lines, "l" + std::string(titles.size() - 1, 'r'));
   fmt::print(
-      "\nThe paper's columns are of its own CMU clips, K = 250, and its ranker: not comparable but for "
-      "the order of the rows.\n");
+      "\nThe paper's columns are for its own CMU clips, K = 250, and its own ranker: not comparable, except "
+      "for the order of the rows.\n");
   print_difference(rows, "cnn-cnn-final", "cnn-cnn-mod2");
   print_difference(rows, "cnn-cnn-mod2", "cnn-cnn-dense");
   print_difference(rows, "cnn-cnn-final", "cnn-cnn-dense");

@@ -1,4 +1,4 @@
-// motiongan compare: statistics of generated clips beside those of real ones.
+// motiongan compare: statistics of generated clips next to those of real ones.
 #include "shared/command.hpp"
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/data/clip_source.hpp"
@@ -16,7 +16,8 @@ struct CompareArgs {
   std::string csv;
 };
 
-/// Clips of files and folders at one rate, without T-poses; those that have no two frames then are left out.
+/// Loads the clips of files and folders at one rate, without T-poses; clips of fewer than two frames are left
+/// out.
 std::vector<motion::Motion> load(const std::vector<std::string>& where, double rate) {
   std::vector<motion::Motion> out;
   std::size_t short_ones = 0;
@@ -35,18 +36,18 @@ std::vector<motion::Motion> load(const std::vector<std::string>& where, double r
 
 int compare_sets(const CompareArgs& args) {
   const std::vector<motion::Motion> generated = load(args.generated, args.rate);
-  require(!generated.empty(), "no generated clip has two frames; nothing to compare");
-  // Speeds depend on the rate: both sets are taken at the generated one's.
+  require(!generated.empty(), "no generated clip has at least two frames; nothing to compare");
+  // Speeds depend on the rate, so both sets are resampled to that of the generated one.
   const double rate = args.rate > 0 ? args.rate : generated.front().rate;
   for (const motion::Motion& motion : generated)
     require(motion.rate == rate, "the generated clips have different rates (", brief(rate), " and ",
             brief(motion.rate), " per second); choose one with --rate");
   const std::vector<motion::Motion> real = load(args.real, rate);
-  require(!real.empty(), "no real clip has two frames at ", brief(rate),
+  require(!real.empty(), "no real clip has at least two frames at ", brief(rate),
           " per second; nothing to compare with");
   const motion::StatisticsComparison result =
       motion::compare(motion::measure(generated), motion::measure(real), args.margin);
-  fmt::print("at {} frames per second; ratios are generated over real, 1 would be the same\n\n{}",
+  fmt::print("at {} frames per second; ratios are generated / real\n\n{}",
              brief(rate), motion::to_table(result));
   if (!args.csv.empty()) {
     make_folder_of(args.csv);
@@ -59,19 +60,19 @@ int compare_sets(const CompareArgs& args) {
 const Verb compare_verb{"compare", [](CLI::App& app, Job& job) {
   CLI::App* verb = app.add_subcommand(
       "compare",
-      "Statistics of generated clips beside those of real ones: spread, speed, range, for each joint");
+      "Compare statistics of generated and real clips: spread, speed and range of each joint");
   const auto args = std::make_shared<CompareArgs>();
   verb->add_option("--generated", args->generated, "BVH files, or folders of them")
       ->required()
       ->type_name("FILES");
   verb->add_option("--real", args->real, "BVH files, or folders of them")->required()->type_name("FILES");
-  verb->add_option("--rate", args->rate, "compare at so many frames per second [the generated clips']")
+  verb->add_option("--rate", args->rate, "frames per second to compare at [the generated clips']")
       ->check(CLI::Range(1e-3, 1e4))
       ->type_name("HZ");
-  verb->add_option("--margin", args->margin, "widen the real range by this share of it at either end")
+  verb->add_option("--margin", args->margin, "widen the real range by this fraction of it at either end")
       ->check(not_negative())
       ->capture_default_str();
-  verb->add_option("--csv", args->csv, "also write the table, a line for each joint")->type_name("FILE");
+  verb->add_option("--csv", args->csv, "also write the table as CSV, a line for each joint")->type_name("FILE");
   verb->callback([&job, args] { job = [args] { return compare_sets(*args); }; });
 }};
 

@@ -1,4 +1,4 @@
-// motiongan evaluate completion: the first paper's Table 3.
+// motiongan evaluate completion: completion error (Lin & Amer, Table 3).
 #include "evaluate/evaluate_completion.hpp"
 
 #include "shared/signals.hpp"
@@ -32,8 +32,8 @@ int evaluate_completion(CompletionArgs args, const CLI::App& verb) {
     if (model != "zero") trained.push_back(model);
   }
   require(trained.empty() || !args.save.empty(), "--save DIR is needed for ", listed(trained),
-          ": where they are kept; --models zero alone needs none");
-  // Minutes alone are the whole budget.
+          ", to store the trained models; --models zero alone needs none");
+  // --minutes alone is the whole budget.
   if (args.minutes > 0) {
     if (verb.count("--iterations") == 0) args.predictors.iterations = 0;
     if (verb.count("--dvgan-iterations") == 0) args.dvgan.iterations = 0;
@@ -46,11 +46,11 @@ int evaluate_completion(CompletionArgs args, const CLI::App& verb) {
   const CompletionData data(motion::read_expmap_collection(args.folder, selection));
   std::size_t frames = 0;
   for (const CompletionClip& clip : data.train()) frames += clip.frames;
-  print_fact("layout", fmt::format("{}: {} numbers a line, {} of them change", name_of(data.layout()),
+  print_fact("layout", fmt::format("{}: {} columns, {} of which vary", name_of(data.layout()),
                                    data.columns(), data.dof()));
   print_fact("training", fmt::format("{}, {} frames at {} per second", counted(data.train().size(), "file"),
                                      frames, brief(data.rate())));
-  print_fact("tests", fmt::format("{} of each of {}: {}", CompletionProtocol::tests,
+  print_fact("tests", fmt::format("{} for each of {}: {}", CompletionProtocol::tests,
                                   counted(data.actions().size(), "action"), listed(data.actions())));
   const Context context;
   if (!trained.empty()) print_fact("device", describe(context.device()));
@@ -67,13 +67,13 @@ void add_model_options(CLI::App& verb, CompletionArgs& a) {
   const auto option = [&](const char* name, auto& member, const char* text) {
     return verb.add_option(name, member, text)->capture_default_str()->group(group);
   };
-  option("--iterations", a.predictors.iterations, "of each model but dvgan")->check(positive());
-  option("--dvgan-iterations", a.dvgan.iterations, "of dvgan")->check(positive());
+  option("--iterations", a.predictors.iterations, "training iterations of each model but dvgan")->check(positive());
+  option("--dvgan-iterations", a.dvgan.iterations, "training iterations of dvgan")->check(positive());
   option("--minutes", a.minutes,
-         "for each model; without a number of iterations they are the whole budget; 0: no limit")
+         "training time of each model; the whole budget if no iterations are given; 0: no limit")
       ->check(not_negative());
   FieldList shared, predictors, dvgan;
-  shared.add(a.seed, {.key = "seed", .help = "of the initial weights, batches and noise"});
+  shared.add(a.seed, {.key = "seed", .help = "seed of the initial weights, batches and noise"});
   a.list_predictor_fields(predictors);
   a.list_dvgan_fields(dvgan);
   add_options(verb, shared, group);
@@ -87,23 +87,21 @@ void add_model_options(CLI::App& verb, CompletionArgs& a) {
 const Verb evaluate_completion_verb{"evaluate completion", [](CLI::App& evaluate, Job& job) {
   CLI::App* verb = evaluate.add_subcommand(
       "completion",
-      "How far completions are from what really follows, as the motion-prediction papers measure it: trains "
-      "the\n"
-      "baselines and dvgan on text files of exponential maps, each in a folder of --save, and prints and "
-      "writes\n"
-      "the tables. Ctrl-C saves and stops; the same command goes on, and trains nothing twice.");
+      "Measure the completion error against the ground truth, as in the motion-prediction papers: train\n"
+      "the baselines and dvgan on text files of exponential maps, each in a folder of --save, then print\n"
+      "and write the tables. Ctrl-C saves and stops; the same command continues, and trains nothing twice.");
   const auto args = std::make_shared<CompletionArgs>();
   CompletionArgs& a = *args;
   verb->add_option("FOLDER", a.folder, "folder with S1, S5, ... (Human3.6M) or train and test (CMU)")
       ->required()
       ->type_name("");
-  verb->add_option("--layout", a.layout, "h36m or cmu; auto: by the folders")
+  verb->add_option("--layout", a.layout, "h36m or cmu; auto: by the folder names")
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "h36m", "cmu"}));
-  verb->add_option("--actions", a.actions, "to test [all that have test files]")
+  verb->add_option("--actions", a.actions, "actions to test [all that have test files]")
       ->delimiter(',')
       ->type_name("A,B");
-  verb->add_option("--train-actions", a.train_actions, "to train on [all that have training files]")
+  verb->add_option("--train-actions", a.train_actions, "actions to train on [all that have training files]")
       ->delimiter(',')
       ->type_name("A,B");
   verb->add_option("--models", a.models, "rows of the tables")
@@ -111,8 +109,8 @@ const Verb evaluate_completion_verb{"evaluate completion", [](CLI::App& evaluate
       ->type_name("A,B")
       ->default_str(listed(known_models()));
   verb->add_option("--save", a.save, "folder of the trained models and of the tables")->type_name("DIR");
-  verb->add_flag("--evaluate-only", a.evaluate_only, "train nothing; take the models that are there");
-  verb->add_option("--samples", a.samples, "completions of each test by dvgan")
+  verb->add_flag("--evaluate-only", a.evaluate_only, "train nothing; evaluate the existing models");
+  verb->add_option("--samples", a.samples, "completions that dvgan generates for each test")
       ->capture_default_str()
       ->check(CLI::Range(1, 65535));
   add_model_options(*verb, a);

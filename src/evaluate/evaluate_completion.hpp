@@ -1,4 +1,4 @@
-// What the parts of `motiongan evaluate completion` share.
+// Shared by the parts of `motiongan evaluate completion`.
 #pragma once
 #include "shared/command.hpp"
 #include "motiongan/experiments/completion_models.hpp"
@@ -27,32 +27,31 @@ struct CompletionArgs {
   std::size_t log_every = 10;
   std::size_t samples = 10;
 
-  /// What a model's checkpoint keeps.
+  /// The options that a model's checkpoint stores.
   void list_predictor_fields(FieldList& list) {
     list.add(hidden, {.key = "hidden",
-                      .help = "width; 0: that of its paper (lstm 256, seq2seq 1024, the others 1000)"});
+                      .help = "width; 0: as in its paper (lstm 256, seq2seq 1024, the others 1000)"});
     list.add(batch, {.key = "batch", .help = "windows in a step", .range = Range::at_least(1)});
   }
   void list_dvgan_fields(FieldList& list) {
     list.add(dvgan_hidden, {.key = "dvgan_hidden", .help = "width", .range = Range::at_least(1)});
     list.add(dvgan_batch, {.key = "dvgan_batch", .help = "windows in a step", .range = Range::at_least(1)});
     list.add(dvgan_frames, {.key = "dvgan_frames",
-                            .help = "frames of a window; 0: 64 for h36m, 32 for cmu, whose running clips hold "
-                                    "no more"});
+                            .help = "frames of a window; 0: 64 for h36m, 32 for cmu, whose running clips are "
+                                    "too short for more"});
     list.add(dvgan_stride, {.key = "dvgan_stride",
-                            .help = "uses every n-th frame of the protocol; 2: 12.5 per second",
+                            .help = "use every n-th frame of the protocol; 2: 12.5 per second",
                             .range = Range::between(1, 25)});
     list.add(critic, {.key = "critic", .help = "cnn or rnn"});
     list.add(critic_steps,
              {.key = "critic_steps", .help = "critic steps in each iteration", .range = Range::at_least(1)});
     list.add(completion_share, {.key = "completion_share",
-                                .help = "fraction of the steps whose fakes continue real frames; the paper has "
-                                        "none",
+                                .help = "fraction of the steps whose fakes continue real frames; the paper: 0",
                                 .range = Range::between(0, 1)});
   }
   FieldList kept_fields(bool of_dvgan) {
     FieldList list;
-    list.add(seed, {.key = "seed", .help = "of the initial weights, batches and noise"});
+    list.add(seed, {.key = "seed", .help = "seed of the initial weights, batches and noise"});
     if (of_dvgan)
       list_dvgan_fields(list);
     else
@@ -67,13 +66,13 @@ std::string listed(const std::vector<std::string>& names);
 /// The folder of a model's run.
 fs::path folder_of(const CompletionArgs& args, const std::string& model);
 
-/// Trains those of args.models that have not had their budget. One that diverges is told, and left as it was
-/// last saved. Returns whether all are done: not if a signal stopped it. `verb` tells which options were
-/// given: those that were not are taken from a run that is there.
+/// Trains those of args.models that have not used up their budget. If one diverges, that is printed and it
+/// stays as it was last saved. Returns false if a signal stopped it. Options that the command line of `verb`
+/// does not give are taken from existing runs.
 bool train_completion_models(const Context& context, const CompletionData& data, const CompletionArgs& args,
                              const CLI::App& verb);
 
-/// Error unless the run was trained on these files.
+/// Throws Error if the run was trained on other files.
 void require_same_data(const CompletionData& data, const fs::path& checkpoint);
 
 /// Measures the models in args.save and prints the tables; writes table.csv, table.md and table.json there.

@@ -5,7 +5,7 @@
 namespace motiongan::command {
 namespace {
 
-/// The rows that the models of args.save give; a row for zero velocity first.
+/// The rows of the models in args.save, and of zero velocity, in the order of args.models.
 std::vector<CompletionRow> measure(const Context& context, const CompletionData& data,
                                    const CompletionArgs& args) {
   std::vector<CompletionRow> rows;
@@ -55,35 +55,35 @@ void print_errors(const CompletionTable& table, const std::string& title,
   print_table(head, rows, "l" + std::string(head.size() - 1, 'r'), "  ");
 }
 
-/// What a reader must know of the numbers.
+/// Notes on how to read the numbers.
 std::vector<std::string> notes_on(const CompletionData& data, const CompletionArgs& args,
                                   const CompletionTable& table) {
   std::vector<std::string> notes{
       "Root of the sum of squared differences of Euler angles (radians, without the root), mean over 8 tests "
-      "of each action; smaller is better. 50 frames are given, 25 predicted."};
+      "of each action; lower is better. 50 frames are given, 25 predicted."};
   std::vector<std::string> trained, untrained;
   for (const CompletionRow& row : table.rows)
     if (row.iterations > 0 && row.name.find("best of") == std::string::npos)
       trained.push_back(fmt::format("{} {}", row.name.substr(0, row.name.find(';')), row.iterations));
-  if (!trained.empty()) notes.push_back("Iterations of training: " + listed(trained) + ".");
+  if (!trained.empty()) notes.push_back("Training iterations: " + listed(trained) + ".");
   for (std::size_t a = 0; a < data.actions().size(); ++a)
     if (data.train_count(a) == 0) untrained.push_back(data.actions()[a]);
   if (!untrained.empty() && table.rows.size() > 1)
-    notes.push_back("Not trained on, for there are no training files of it: " + listed(untrained) + ".");
+    notes.push_back("Not trained on, because there are no training files: " + listed(untrained) + ".");
   if (table.times_differ())
     notes.push_back(
-        "80 to 1000 ms are the names that the literature has for these frames, counted as if there were 25 "
-        "per second; these files have 60, so that the true times are shorter.");
+        "80 to 1000 ms are the literature's names for these frames, which assume 25 frames per second; these "
+        "files have 60, so the true times are shorter.");
   if (data.layout() == motion::ExpmapLayout::cmu)
     notes.push_back(
-        "The paper's Table 3 is of Human3.6M: other clips at another rate. Its rows are not put beside "
-        "these, "
-        "for they do not compare.");
+        "The paper's Table 3 is for Human3.6M: other clips at another rate. Its rows are left out because "
+        "they are not comparable.");
   for (const std::string& model : args.models)
     if (model == "dvgan" && args.samples > 1)
       notes.push_back(fmt::format(
-          "dvgan is told nothing of the future when its best of {} is taken at each time: that row says how "
-          "near its samples come, and is no prediction. A dash is a time that is no frame of the model.",
+          "dvgan; best of {} takes the best sample at each time, selected by the ground truth: it shows how "
+          "near the samples come, and is not a prediction. A dash marks a time that is no frame of the "
+          "model.",
           args.samples));
   return notes;
 }
@@ -95,7 +95,7 @@ void report_completion(const Context& context, const CompletionData& data, const
   table.rows = measure(context, data, args);
   if (data.layout() == motion::ExpmapLayout::h36m)
     for (CompletionRow& row : published_completion_rows(data.actions())) table.rows.push_back(std::move(row));
-  require(!table.rows.empty(), "there is nothing to measure: no model of ", args.save, " is trained");
+  require(!table.rows.empty(), "there is nothing to measure: no model in ", args.save, " is trained");
   for (std::size_t a = 0; a < data.actions().size(); ++a)
     print_errors(table,
                  fmt::format("{} ({})", data.actions()[a], counted(data.train_count(a), "training file")),

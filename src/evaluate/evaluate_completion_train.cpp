@@ -8,7 +8,7 @@
 namespace motiongan::command {
 namespace {
 
-/// What the model is trained on, to tell other files from these.
+/// The training data as text, stored in the checkpoint to detect other data.
 std::string data_note(const CompletionData& data) {
   nlohmann::json clips = nlohmann::json::array();
   for (const CompletionClip& clip : data.train()) clips.push_back({clip.id, clip.frames});
@@ -19,11 +19,11 @@ std::string data_note(const CompletionData& data) {
       .dump();
 }
 
-/// Takes what the command line does not give from the run that is there; refuses what differs from it.
+/// Takes options that the command line does not give from the existing run. Throws Error if others differ.
 void take_run(CompletionArgs& args, bool dvgan, const CLI::App& verb, const fs::path& checkpoint) {
   const std::string note = options_note(checkpoint);
   require(!note.empty(), checkpoint.string(),
-          " is of another command: it does not say its options; choose another --save");
+          " was not written by this command: it stores no options; choose another --save");
   const FieldList fields = args.kept_fields(dvgan);
   take_note(fields, verb, note, checkpoint);
   const nlohmann::json then = io::parse_object(note, checkpoint.string()),
@@ -51,7 +51,7 @@ bool train_dvgan(const Context& context, const CompletionData& data, const Compl
   if (!windows.skipped.empty()) {
     std::vector<std::string> ids;
     for (const motion::SkippedClip& clip : windows.skipped) ids.push_back(clip.id);
-    fmt::print("dvgan: {} too short for its windows of {} frames and left out: {}\n",
+    fmt::print("dvgan: left out {} too short for a window of {} frames: {}\n",
                counted(ids.size(), "file"), args.dvgan_frames, listed(ids));
   }
   DvganTrainOptions options;
@@ -95,8 +95,8 @@ void require_same_data(const CompletionData& data, const fs::path& checkpoint) {
   const RunRecord record = read_run_record(checkpoint);
   const auto note = record.notes.find("data");
   require(note != record.notes.end() && note->second == data_note(data), checkpoint.string(),
-          " was trained on other files, or on other actions of them; give the folder and the --train-actions "
-          "of its first start, or another --save");
+          " was trained on other files, or on other actions of them; give the original folder and "
+          "--train-actions, or another --save");
 }
 
 bool train_completion_models(const Context& context, const CompletionData& data, const CompletionArgs& asked,
@@ -112,7 +112,7 @@ bool train_completion_models(const Context& context, const CompletionData& data,
       take_run(args, dvgan, verb, checkpoint);
       require_same_data(data, checkpoint);
       if (has_had(folder, budget_of(args, dvgan))) {
-        fmt::print("{}: is trained already\n", model);
+        fmt::print("{}: already trained\n", model);
         continue;
       }
     }

@@ -1,5 +1,5 @@
-// motiongan evaluate model: what a text-conditioned generator makes, beside the real motion of its test clips
-// (the paper's Table 2), and by the measures of today.
+// motiongan evaluate model: compares a text-conditioned generator with the real motion of its test clips
+// (Lin & Amer, Table 2, and current metrics).
 #include "motiongan/experiments/model_evaluation.hpp"
 
 #include "evaluate/evaluate_model.hpp"
@@ -17,8 +17,7 @@ struct EvaluateModelArgs : CaptionedDataArgs {
   ModelEvaluationOptions evaluation;
 };
 
-/// How many of the data set's test clips the run in `folder` was trained on, by its list of the split;
-/// nothing where there is no list.
+/// How many of the test clips the run in `folder` was trained on, by its split.tsv; nothing if there is none.
 std::optional<std::size_t> trained_on(const fs::path& folder, const motion::Dataset& data) {
   const fs::path split = RunFiles{folder}.split();
   if (!fs::is_regular_file(split)) return std::nullopt;
@@ -32,7 +31,7 @@ std::optional<std::size_t> trained_on(const fs::path& folder, const motion::Data
   return count;
 }
 
-/// Warns of what makes the figures other than they seem.
+/// Warns of anything that distorts the figures.
 void warn_of_data(const motion::Dataset& data, const Dvgan& model, const fs::path& model_folder,
                   const Ranker& ranker, const fs::path& ranker_folder) {
   const auto warn = [&](const std::string& text) { fmt::print(stderr, "motiongan: {}\n", text); };
@@ -40,22 +39,22 @@ void warn_of_data(const motion::Dataset& data, const Dvgan& model, const fs::pat
   const auto seen = trained_on(model_folder, data), ranked = trained_on(ranker_folder, data);
   if (seen.value_or(0) > 0)
     warn(
-        fmt::format("the model was trained on {} of the {}: they are not new to it (other clips or another "
-                    "split than its run's)",
+        fmt::format("the model was trained on {} of the {}: its figures are too good (the clips or the split "
+                    "are not those of its run)",
                     *seen, counted(all, "test clip")));
-  if (!seen) warn("there is no split.tsv beside the model: clips that it was trained on may be among these");
+  if (!seen) warn("there is no split.tsv next to the model: it may have been trained on these clips");
   if (ranked.value_or(0) > 0)
-    warn(fmt::format("the ranker was trained on {} of the {}: what it says of the real motion is too good",
+    warn(fmt::format("the ranker was trained on {} of the {}: its figures for real motion are too good",
                      *ranked, counted(all, "test clip")));
-  if (!ranked) warn("there is no split.tsv beside the ranker: it may have been trained on these clips");
+  if (!ranked) warn("there is no split.tsv next to the ranker: it may have been trained on these clips");
   if (ranker.format().layout.root_position() && !model.format().layout.root_position())
-    warn("the model makes no root position and the ranker looks at one: both sets stand still for it");
+    warn("the model generates no root position but the ranker uses one: it sees both sets stay in place");
   std::size_t strange = 0;
   for (const motion::DatasetClip& clip : data.test)
     for (const std::string& caption : clip.captions)
       strange += model.format().vocabulary.unknown_words(caption).empty() ? 0 : 1;
   if (strange > 0)
-    warn(fmt::format("{} of the test clips have words that no training caption of the model had",
+    warn(fmt::format("{} of the test clips have words that the model's training captions did not contain",
                      counted(strange, "caption")));
 }
 
@@ -68,7 +67,7 @@ int run_evaluation(EvaluateModelArgs args, const CLI::App& verb) {
   const motion::MotionFormat& format = model.format();
   ranker.format().require_skeleton(format.skeleton(), "the model " + file.string());
   take_captioned_data(args, verb, checkpoint, file);
-  // Windows are the model's, wherever they are from.
+  // Windows have the model's format, whichever clips they come from.
   args.data.frames = format.frames;
   args.data.rate = format.rate;
   args.data.root_position = format.layout.root_position();
@@ -78,14 +77,14 @@ int run_evaluation(EvaluateModelArgs args, const CLI::App& verb) {
   print_data(data, args);
   format.require_skeleton(data.format.skeleton(), "the folder of clips");
   print_fact("ranker",
-             fmt::format("{}, {} numbers an embedding",
+             fmt::format("{}, embedding of {} dimensions",
                          ranker.options().kind == RankerKind::cnn ? "CNN" : "RNN", ranker.options().hidden));
   print_fact("device", describe(context.device()));
   warn_of_data(data, model, file.parent_path(), ranker, ranked_by.parent_path());
 
   const RealEvaluation real = evaluate_real(ranker, data, args.evaluation);
   print_fact("choices",
-             fmt::format("K = {} of {}, {} made and {} real motions of each",
+             fmt::format("K = {} of {}, {} generated and {} real motions of each",
                          counted(real.descriptions.size(), "distinct description"),
                          counted(real.clips, "test clip"), args.evaluation.samples, args.evaluation.samples));
   const ModelEvaluation made = evaluate_model(model, ranker, real, args.evaluation);
@@ -101,32 +100,32 @@ int run_evaluation(EvaluateModelArgs args, const CLI::App& verb) {
 
 const Verb evaluate_model_verb{"evaluate model", [](CLI::App& evaluate, Job& job) {
   CLI::App* verb = evaluate.add_subcommand("model",
-                                           "A text-conditioned generator on the descriptions of its test "
-                                           "clips: inception score and retrieval (the\n"
-                                           "paper's Table 2), FID, diversity, multimodality, foot skating, "
-                                           "jerk, bones, drift; real motion beside.");
+                                           "Evaluate a text-conditioned generator on the descriptions of its "
+                                           "test clips, next to real motion: inception\n"
+                                           "score and retrieval (Lin & Amer, Table 2), FID, diversity, "
+                                           "multimodality, foot skating, jerk, bones, drift.");
   const auto args = std::make_shared<EvaluateModelArgs>();
   EvaluateModelArgs& a = *args;
   const auto option = [&](const char* name, auto& member, const char* text) {
     return verb->add_option(name, member, text)->capture_default_str();
   };
-  verb->add_option("MODEL", a.model, "model file, or the --save folder of a training")
+  verb->add_option("MODEL", a.model, "model file, or the --save folder of a training run")
       ->required()
       ->type_name("");
   add_test_clip_options(*verb, a);
-  verb->add_option("--ranker", a.ranker, "folder of a run of `train ranker`, or a ranker's file")
+  verb->add_option("--ranker", a.ranker, "folder of a `train ranker` run, or a ranker file")
       ->required()
       ->type_name("RANKER");
-  option("--descriptions", a.evaluation.descriptions, "K: the most popular ones, at most")->check(positive());
-  option("--samples", a.evaluation.samples, "motions of each description, made and real")
+  option("--descriptions", a.evaluation.descriptions, "K: at most this many, the most frequent ones")->check(positive());
+  option("--samples", a.evaluation.samples, "motions of each description, generated and real")
       ->check(CLI::Range(std::size_t{2}, std::size_t{1000000}))
       ->type_name("N");
-  option("--seed", a.evaluation.seed, "of the motions made")->check(not_negative());
+  option("--seed", a.evaluation.seed, "seed of the generated motions")->check(not_negative());
   option("--drift-seconds", a.evaluation.drift_seconds,
-         "length of the motions that drift is measured on; 0: none. RNN generators only")
+         "length of the motions that drift is measured on (RNN generators only); 0: no drift")
       ->check(not_negative());
   add_quality_options(*verb, a.evaluation.feet);
-  verb->add_option("--json", a.json, "write all of it to a file")->type_name("FILE");
+  verb->add_option("--json", a.json, "also write all results as JSON")->type_name("FILE");
   verb->callback([&job, args, verb] {
     fill_in_procedural(*verb, args->procedural);
     job = [args, verb] { return run_evaluation(*args, *verb); };

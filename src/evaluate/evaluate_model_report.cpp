@@ -40,15 +40,15 @@ void print_table2(std::string_view generator, const ModelEvaluation& made, const
   add_all("CMU", "250", paper::table2_cmu, paper::real_cmu);
   add_all("H3.6M", "15", paper::table2_h36m, paper::real_h36m);
   print_table({"", "K", "IS, nats", "exp", "R@1 %", "R@3 %", "R@5 %", "R@10 %"}, rows, "lrrrrrrr");
-  fmt::print("The paper's rows are of other clips, captions and rankers{}: not comparable.\n",
+  fmt::print("The paper's rows are for other clips, captions and rankers{}: not comparable.\n",
              m.retrieval.descriptions == 250 ? "" : ", and another K");
 }
 
 std::string biased_note(const FrechetDistance& d) {
   return d.biased()
              ? fmt::format(
-                   "FID is of {} and {} motions in {} dimensions, too few for them: its size depends on "
-                   "how many, so compare it only with others of as many\n",
+                   "FID is computed from {} and {} motions, too few for {} dimensions: it is biased, so compare "
+                   "it only with values from as many motions\n",
                    d.samples1, d.samples2, d.dimensions)
              : std::string();
 }
@@ -107,13 +107,13 @@ void print_model_evaluation(std::string_view generator, const ModelEvaluation& m
   for (auto& row : quality_rows(m.quality, r.quality)) rows.push_back(std::move(row));
   fmt::print("\n");
   print_table({"", "this model", "real motion"}, rows, "lrr");
-  fmt::print("*  in the ranker's embedding (unit length): other rankers give other figures\n");
+  fmt::print("*  in the ranker's embedding (unit length): not comparable between rankers\n");
   if (real.training)
-    fmt::print("** of training clips from test clips, of the {} that both have\n",
+    fmt::print("** training clips against test clips, for the {} that both have\n",
                counted(real.training_descriptions, "description"));
   fmt::print("{}", biased_note(made.distance));
   print_quality_notes(r.quality, options.feet);
-  if (m.quality.bone_error < 1e-3) fmt::print("bones cannot stretch where joints only turn\n");
+  if (m.quality.bone_error < 1e-3) fmt::print("bone lengths are constant because joints only rotate\n");
   if (made.drift) print_drift(*made.drift);
 }
 

@@ -1,4 +1,4 @@
-// motiongan evaluate motion: files of generated motion beside real ones, by measures that need no model.
+// motiongan evaluate motion: compares files of generated and real motion by metrics that need no model.
 #include "evaluate/evaluate_motion.hpp"
 
 #include <map>
@@ -23,8 +23,8 @@ struct EvaluateMotionArgs {
 /// Motions by their id: the file's path below the folder, without its extension.
 using NamedMotions = std::map<std::string, motion::Motion>;
 
-/// Clips of a folder or a file at one rate, without T-poses; those that are too short to measure are left
-/// out.
+/// Loads the clips of a folder or a file at one rate, without T-poses; clips of fewer than four frames are
+/// left out.
 NamedMotions load(const fs::path& where, double rate) {
   const std::vector<fs::path> files = motion::find_bvh_files(where);
   const std::vector<std::string> ids = motion::clip_ids(files, where);
@@ -59,7 +59,7 @@ double seconds_of(const NamedMotions& named) {
   return seconds;
 }
 
-/// What files of equal names come to.
+/// NPSS over files of equal names, which are taken as prediction and ground truth.
 struct Pairs {
   Npss npss;
   std::size_t shortest = 0, longest = 0;  ///< frames
@@ -84,7 +84,7 @@ Pairs compare_pairs(const NamedMotions& generated, const NamedMotions& real) {
 
 int evaluate_motion(const EvaluateMotionArgs& args) {
   const NamedMotions generated = load(args.generated, args.rate);
-  // Speeds and jerk depend on the rate: both sets are taken at the generated one's.
+  // Speeds and jerk depend on the rate, so both sets are resampled to that of the generated one.
   const double rate = args.rate > 0 ? args.rate : generated.begin()->second.rate;
   for (const auto& [id, motion] : generated)
     require(motion.rate == rate, "the generated clips have different rates (", brief(rate), " and ",
@@ -105,13 +105,13 @@ int evaluate_motion(const EvaluateMotionArgs& args) {
   fmt::print("\n");
   print_quality_notes(truth, args.feet);
   if (count > 0)
-    fmt::print("NPSS: of {} of files with equal names, over {} frames: less is better\n",
+    fmt::print("NPSS: {} of files with equal names, over {} frames; lower is better\n",
                counted(count, "pair"),
                pairs.shortest == pairs.longest ? std::to_string(pairs.longest)
                                                : fmt::format("{} to {}", pairs.shortest, pairs.longest));
   else
-    fmt::print("NPSS is measured on files of equal names in both folders: there are none\n");
-  fmt::print("{} compare gives spread, speed and range of each joint\n", program());
+    fmt::print("NPSS is not measured: no files of the two folders have equal names\n");
+  fmt::print("`{} compare` prints spread, speed and range of each joint\n", program());
   if (args.json.empty()) return 0;
   nlohmann::json out{{"rate", rate}, {"generated", quality_json(made)}, {"real", quality_json(truth)}};
   if (count > 0) out["npss"] = {{"value", pairs.npss.value()}, {"pairs", count}, {"frames", pairs.longest}};
@@ -123,19 +123,19 @@ int evaluate_motion(const EvaluateMotionArgs& args) {
 
 const Verb evaluate_motion_verb{"evaluate motion", [](CLI::App& evaluate, Job& job) {
   CLI::App* verb = evaluate.add_subcommand("motion",
-                                           "Generated clips beside real ones, without any model: feet that "
-                                           "slide, jerk, bones that stretch; where\n"
-                                           "files of equal names are predictions and their truth, NPSS too.");
+                                           "Compare generated with real clips without any model: foot "
+                                           "skating, jerk, bone-length error; and NPSS\n"
+                                           "over files of equal names, taken as prediction and ground truth.");
   const auto args = std::make_shared<EvaluateMotionArgs>();
   verb->add_option("--generated", args->generated, "BVH file, or folder of them")
       ->required()
       ->type_name("DIR");
   verb->add_option("--real", args->real, "BVH file, or folder of them")->required()->type_name("DIR");
-  verb->add_option("--rate", args->rate, "measure at so many frames per second [the generated clips']")
+  verb->add_option("--rate", args->rate, "frames per second to measure at [the generated clips']")
       ->check(CLI::Range(1e-3, 1e4))
       ->type_name("HZ");
   add_quality_options(*verb, args->feet);
-  verb->add_option("--json", args->json, "write all of it to a file")->type_name("FILE");
+  verb->add_option("--json", args->json, "also write all results as JSON")->type_name("FILE");
   verb->callback([&job, args] { job = [args] { return evaluate_motion(*args); }; });
 }};
 

@@ -1,4 +1,4 @@
-// What `evaluate motion` and `evaluate model` have in common: measures of motion that need no model.
+// Metrics of motion that need no model; shared by `evaluate motion` and `evaluate model`.
 #pragma once
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -11,14 +11,14 @@ namespace motiongan::command {
 /// Adds --unit-metres and --feet to a verb.
 inline void add_quality_options(CLI::App& verb, FootSkateOptions& options) {
   verb.add_option("--unit-metres", options.unit_metres,
-                  "size of the clips' unit (CMU 0.05644, Bandai-Namco 0.01) [a leg is taken for a metre]")
+                  "metres per unit of the clips (CMU 0.05644, Bandai-Namco 0.01) [a leg is taken as 1 m]")
       ->check(positive());
-  verb.add_option("--feet", options.feet, "joints that are feet [toes, feet or ankles by name]")
+  verb.add_option("--feet", options.feet, "foot joints [toes, feet or ankles, by name]")
       ->delimiter(',')
       ->type_name("LEFT,RIGHT");
 }
 
-/// A number with `decimals`; "-" where there is none.
+/// A number with `decimals`; "-" if it is not finite.
 inline std::string cell(double value, int decimals) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";
 }
@@ -32,7 +32,7 @@ inline std::vector<std::vector<std::string>> quality_rows(const MotionQuality& g
   };
   if (generated.feet && real.feet) {
     add(
-        "foot skate, % of steps", [](const MotionQuality& q) { return 100 * q.feet->ratio(); }, 2);
+        "foot skating, % of steps", [](const MotionQuality& q) { return 100 * q.feet->ratio(); }, 2);
     add(
         "a foot near the floor, %", [](const MotionQuality& q) { return 100 * q.feet->contact_share(); }, 1);
   }
@@ -43,16 +43,16 @@ inline std::vector<std::vector<std::string>> quality_rows(const MotionQuality& g
   return rows;
 }
 
-/// What a reader must know of those rows.
+/// Prints what those rows mean.
 inline void print_quality_notes(const MotionQuality& real, const FootSkateOptions& options) {
   if (real.feet)
-    fmt::print("foot skate: steps in which a foot below {} {} slides faster than {} {}/s{}\n",
+    fmt::print("foot skating: steps in which a foot below {} {} slides faster than {} {}/s{}\n",
                brief(options.unit_metres > 0 ? 100 * options.height : options.height),
                options.unit_metres > 0 ? "cm" : "leg lengths", brief(options.speed),
                options.unit_metres > 0 ? "m" : "leg lengths",
                options.unit_metres > 0 ? "" : " (--unit-metres gives metres)");
   else
-    fmt::print("no joints are called toes, feet or ankles: feet are not measured; name them with --feet\n");
+    fmt::print("no joint is named like toes, feet or ankles: feet are not measured; name them with --feet\n");
 }
 
 inline nlohmann::json quality_json(const MotionQuality& q) {

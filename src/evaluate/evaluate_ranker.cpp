@@ -1,4 +1,4 @@
-// motiongan evaluate ranker: how often a ranker finds the description of a clip that it was not trained on.
+// motiongan evaluate ranker: how often a ranker finds the description of a held-out clip.
 #include "motiongan/experiments/paper_tables.hpp"
 #include "motiongan/experiments/ranker_evaluation.hpp"
 #include "motiongan/formats/text_file.hpp"
@@ -32,17 +32,17 @@ void print_tables(const RankerEvaluation& e, const EvaluateRankerArgs& args) {
   std::vector<std::vector<std::string>> rows{row("random", k, random_recall(r.descriptions)),
                                              row("most common first", k, blind_recall(e.real.right)),
                                              row("this ranker", k, r.recall),
-                                             row("  each description alike", k, r.by_description())};
+                                             row("  mean over descriptions", k, r.by_description())};
   for (const paper::RankerRow& p : paper::table1)
     rows.push_back(row(fmt::format("paper, CMU: {}", p.name), "250", p.cmu));
   for (const paper::RankerRow& p : paper::table1)
     rows.push_back(row(fmt::format("paper, H3.6M: {}", p.name), "15", p.h36m));
   print_table({"retrieval, %", "K", "R@1", "R@3", "R@5", "R@10"}, rows, "lrrrrr");
   fmt::print(
-      "The paper's rows are of other clips and captions{}: not comparable, but for the distance to random.\n",
+      "The paper's rows are for other clips and captions{}: not comparable, except for the gap to random.\n",
       r.descriptions == 250 ? "" : ", and another K");
   fmt::print(
-      "mean rank of the right description {:.1f} of {}; inception score of these windows {:.2f} nats\n",
+      "mean rank of the correct description {:.1f} of {}; inception score of these windows {:.2f} nats\n",
       r.mean_rank, r.descriptions, e.inception_score);
   std::vector<const Retrieval::Part*> parts;
   for (const Retrieval::Part& part : r.parts) parts.push_back(&part);
@@ -100,7 +100,7 @@ int run_evaluation(EvaluateRankerArgs args, const CLI::App& verb) {
   const Context context;
   const Ranker ranker = Ranker::load(context, file);
   take_captioned_data(args, verb, checkpoint, file);
-  // Windows are the ranker's, wherever they are from.
+  // Windows have the ranker's format, whichever clips they come from.
   args.data.frames = ranker.format().frames;
   args.data.rate = ranker.format().rate;
   fill_in_data(args, motion::RootRotation::heading);
@@ -117,7 +117,7 @@ int run_evaluation(EvaluateRankerArgs args, const CLI::App& verb) {
                   counted(evaluation.retrieval.descriptions, "distinct description"),
                   counted(evaluation.real.clips, "test clip"), args.evaluation.windows_per_clip,
                   strange == 0 ? std::string()
-                               : fmt::format("; {} have words that no training caption had", strange)));
+                               : fmt::format("; {} have words that no training caption contains", strange)));
   fmt::print("\n");
   print_tables(evaluation, args);
   if (!args.json.empty()) write_json(evaluation, ranker, args.json);
@@ -127,22 +127,22 @@ int run_evaluation(EvaluateRankerArgs args, const CLI::App& verb) {
 const Verb evaluate_ranker_verb{"evaluate ranker", [](CLI::App& evaluate, Job& job) {
   CLI::App* verb = evaluate.add_subcommand(
       "ranker",
-      "How often a ranker finds the description of a clip that it was not trained on (the paper's Table 1).\n"
-      "Clips of equal descriptions are right for each other: it chooses among the K distinct ones.");
+      "Measure how often a ranker finds the description of a held-out clip among K distinct ones\n"
+      "(Lin & Amer, Table 1). Clips with equal descriptions count as correct for each other.");
   const auto args = std::make_shared<EvaluateRankerArgs>();
   EvaluateRankerArgs& a = *args;
   const auto option = [&](const char* name, auto& member, const char* text) {
     return verb->add_option(name, member, text)->capture_default_str();
   };
-  verb->add_option("RANKER", a.ranker, "folder of a run of `train ranker`, or a ranker's file")
+  verb->add_option("RANKER", a.ranker, "folder of a `train ranker` run, or a ranker file")
       ->required()
       ->type_name("");
   add_test_clip_options(*verb, a);
-  option("--descriptions", a.evaluation.descriptions, "K: the most popular ones, at most")->check(positive());
-  option("--windows", a.evaluation.windows_per_clip, "of each clip, evenly spread")->check(positive());
-  option("--breakdown", a.breakdown, "descriptions to show one by one, the popular first")
+  option("--descriptions", a.evaluation.descriptions, "K: at most this many, the most frequent ones")->check(positive());
+  option("--windows", a.evaluation.windows_per_clip, "windows of each clip, evenly spaced")->check(positive());
+  option("--breakdown", a.breakdown, "number of descriptions to list separately, the most frequent first")
       ->check(not_negative());
-  verb->add_option("--json", a.json, "write all of it to a file")->type_name("FILE");
+  verb->add_option("--json", a.json, "also write all results as JSON")->type_name("FILE");
   verb->callback([&job, args, verb] {
     fill_in_procedural(*verb, args->procedural);
     job = [args, verb] { return run_evaluation(*args, *verb); };

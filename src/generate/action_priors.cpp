@@ -1,4 +1,5 @@
-// Seconds of motion that an attention model goes on from: of files, or drawn from the clips of its training.
+// Priors, the seconds of motion that an attention model continues: read from files, or drawn from a run's
+// clips.
 #include "generate/action_priors.hpp"
 
 #include <cmath>
@@ -14,7 +15,7 @@
 namespace motiongan::command {
 namespace {
 
-/// A clip as the format has it, and its joints' rotations where the file has some.
+/// A clip in the model's format, and its joint rotations if the file has them.
 struct SourceClip {
   motion::PositionClip clip;
   std::optional<motion::Motion> motion;
@@ -54,7 +55,7 @@ GivenPrior take_prior(const SourceClip& source, const motion::PositionFormat& fo
   return out;
 }
 
-/// The lines to draw from, in an order of the seed's own.
+/// The lines to draw from, shuffled by the seed.
 std::vector<SplitLine> pool_of(std::vector<SplitLine> lines, const std::string& label, std::uint64_t seed,
                                const fs::path& split) {
   const auto keep = [&](const auto& wanted) {
@@ -63,10 +64,10 @@ std::vector<SplitLine> pool_of(std::vector<SplitLine> lines, const std::string& 
     return true;
   };
   if (!keep([](const SplitLine& line) { return !line.train; }))
-    fmt::print("{} has no clips for testing: priors are of clips that the model was trained on\n",
+    fmt::print("{} has no test clips: priors are drawn from training clips\n",
                split.string());
   if (!keep([&](const SplitLine& line) { return line.label == label; }))
-    fmt::print("no clip of class '{}' was kept for testing: priors are of other classes\n", label);
+    fmt::print("there is no test clip of class '{}': priors are drawn from other classes\n", label);
   const RandomKey key{.seed = seed, .stream = RandomStream::seeding};
   for (std::size_t i = lines.size(); i > 1; --i)
     std::swap(lines[i - 1], lines[random_below(key, static_cast<std::uint32_t>(i), i)]);
@@ -86,11 +87,11 @@ std::vector<SplitLine> read_split(const fs::path& file) {
     const std::string part = line.substr(0, first);
     require(second != line.npos && (part == "train" || part == "test"), file.string(), ":", number,
             ": found '", line.substr(0, 60),
-            "', expected train or test, clip id and class, with tabs between them");
+            "', expected train or test, clip id and class, separated by tabs");
     out.push_back({part == "train", line.substr(first + 1, second - first - 1),
                    line.substr(second + 1, line.find('\t', second + 1) - second - 1)});
   }
-  require(!out.empty(), file.string(), " names no clip");
+  require(!out.empty(), file.string(), " lists no clips");
   return out;
 }
 
@@ -120,7 +121,7 @@ std::vector<GivenPrior> draw_priors(const fs::path& run, const motion::PositionF
     const auto found = files.find(id);
     require(found != files.end(), "clip ", id, " of ", split.string(), " is not in ",
             data.procedural > 0 ? "the built-in motion" : data.folder,
-            "; say with --data where the clips are");
+            "; give the folder of the clips with --data");
     return read_source(found->second, id, format, data);
   };
   std::vector<GivenPrior> out;

@@ -1,4 +1,4 @@
-// motiongan augment: a synthetic clip for each training clip, and whether they help.
+// motiongan augment: generates a synthetic clip for each training clip, and tests whether they help.
 #include "generate/augment.hpp"
 
 #include <algorithm>
@@ -26,13 +26,12 @@ bool gives_split(const CLI::App& verb) {
   return false;
 }
 
-/// Puts clips into the parts in which the model's training had them; others stay where they are. Where the
-/// command line asks for another split, says which clips held out the model has seen.
+/// Moves clips into the part, training or test, that they had in the model's run; unknown clips stay. If the
+/// command line asks for another split, only prints how many held-out clips the model was trained on.
 void follow_split(motion::ActionDataset& data, const fs::path& split, bool other_split) {
   if (!fs::exists(split)) {
     fmt::print(
-        "there is no {}: training clips are those of this split, whether the model was trained on them or "
-        "not\n",
+        "there is no {}: the split may differ from the one that the model was trained with\n",
         split.string());
     return;
   }
@@ -56,11 +55,11 @@ void follow_split(motion::ActionDataset& data, const fs::path& split, bool other
     }
   data.train = std::move(train);
   data.test = std::move(test);
-  require(!data.train.empty(), "none of the clips is one that the model was trained on (", split.string(),
+  require(!data.train.empty(), "the model was trained on none of these clips (", split.string(),
           ")");
 }
 
-/// Clips, and labels.tsv for a training on them.
+/// Writes the clips, and labels.tsv to train on them.
 void write_clips(const AugmentArgs& args, const ActionGan& model,
                  const std::vector<SyntheticClip>& clips) {
   const fs::path out = args.out;
@@ -108,24 +107,24 @@ int augment(AugmentArgs args, const CLI::App& verb) {
 
 const Verb augment_verb{"augment", [](CLI::App& app, Job& job) {
   CLI::App* verb = app.add_subcommand("augment",
-                                      "Double a set of clips with classes: one synthetic clip for each "
-                                      "training clip, of the same first second,\n"
-                                      "class and length, by a model of `motiongan train attention`. Clips "
-                                      "and labels are those of the training, unless\n"
-                                      "others are given. --study trains classifiers with and without them, "
-                                      "and measures both on the clips held out.");
+                                      "Generate one synthetic clip for each training clip, with the same "
+                                      "first second, class and length, by a\n"
+                                      "model of `motiongan train attention`. Clips and labels are those of "
+                                      "its run unless others are given.\n"
+                                      "--study trains classifiers with and without the synthetic clips, and "
+                                      "tests them on the held-out clips.");
   const auto args = std::make_shared<AugmentArgs>();
-  verb->add_option("MODEL", args->model, "model file, or the --save folder of a training")
+  verb->add_option("MODEL", args->model, "model file, or the --save folder of a training run")
       ->required()
       ->type_name("");
   add_action_data_options(*verb, args->data, false);
-  verb->add_option("--out", args->out, "folder for the clips and labels.tsv; made if missing")
+  verb->add_option("--out", args->out, "folder for the clips and labels.tsv; created if missing")
       ->type_name("DIR");
   add_format_option(*verb, args->format);
-  verb->add_option("--seed", args->seed, "of the noise, where the model has some")
+  verb->add_option("--seed", args->seed, "seed of the noise, if the model has any")
       ->check(not_negative())
       ->capture_default_str();
-  verb->add_flag("--study", args->study, "train and measure classifiers");
+  verb->add_flag("--study", args->study, "train and compare classifiers");
   add_study_options(*verb, args->studied);
   verb->callback([&job, args, verb] {
     fill_in_procedural(*verb, args->data.procedural);

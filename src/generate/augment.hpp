@@ -1,4 +1,4 @@
-// motiongan augment: what its parts share.
+// Shared by the parts of motiongan augment.
 #pragma once
 #include "shared/action_data.hpp"
 #include "motiongan/models/action_gan.hpp"
@@ -14,8 +14,8 @@ struct StudyArgs {
 
 void add_study_options(CLI::App& verb, StudyArgs& args);
 
-/// Trains classifiers with and without the synthetic clips, prints their accuracy and writes the table. The
-/// exit status.
+/// Trains classifiers with and without the synthetic clips, prints their accuracy and writes the table.
+/// Returns the exit status.
 int run_study(const StudyArgs& args, const ActionGan& model, const motion::ActionDataset& data,
               const std::vector<SyntheticClip>& synthetic);
 

@@ -49,19 +49,19 @@ void add_study_options(CLI::App& verb, StudyArgs& a) {
   const auto option = [&](const char* name, auto& member, const char* text) {
     return verb.add_option(name, member, text)->capture_default_str()->group("Study");
   };
-  option("--seeds", a.seeds, "how many times both classifiers are trained")->check(positive());
+  option("--seeds", a.seeds, "number of times both classifiers are trained")->check(positive());
   option("--iterations", a.iterations, "steps of each classifier")->check(positive());
-  option("--minutes", a.minutes, "stop each classifier after that long; 0: no limit")->check(not_negative());
-  option("--batch", a.batch, "windows in a step")->check(positive());
+  option("--minutes", a.minutes, "time limit for each classifier; 0: none")->check(not_negative());
+  option("--batch", a.batch, "windows per step")->check(positive());
   option("--hidden", a.hidden, "width of the classifier")->check(positive());
-  option("--learning-rate", a.learning_rate, "Adam's")->check(positive());
+  option("--learning-rate", a.learning_rate, "learning rate of Adam")->check(positive());
   option("--csv", a.csv, "table to write")->type_name("FILE");
 }
 
 int run_study(const StudyArgs& args, const ActionGan& model, const motion::ActionDataset& data,
               const std::vector<SyntheticClip>& synthetic) {
   require(!data.test.empty(),
-          "the study needs clips that were not trained on, and none are kept for testing");
+          "the study needs test clips, but none are held out for testing");
   AugmentationStudyOptions options{.seeds = args.seeds,
                                    .iterations = args.iterations,
                                    .max_minutes = args.minutes,

@@ -1,4 +1,4 @@
-// motiongan complete: how a clip could go on.
+// motiongan complete: continues a clip, guided by a text.
 #include <charconv>
 #include <cmath>
 
@@ -22,10 +22,10 @@ struct CompleteArgs {
   double rate = 0;
 };
 
-/// The clip at the model's rate, from the frame on that the seed begins with.
+/// The clip at the model's rate, from the first seed frame on.
 struct Prior {
-  motion::Motion seed, truth;  // truth: what the clip does next, as far as it goes
-  std::string from;            // where the seed begins, for people
+  motion::Motion seed, truth;  // truth: the clip's own continuation, as far as it goes
+  std::string from;            // where the seed begins, for messages
 };
 
 /// The frame of the file that --from names: "240", or "2.5s".
@@ -54,8 +54,8 @@ Prior read_prior(const CompleteArgs& args, const motion::MotionFormat& format) {
   require(rest.frames >= args.seed_frames, "the prior ", args.prior, " has ",
           counted(in_file - from, "frame"), " from frame ", from, " on, ",
           duration(static_cast<double>(in_file - from) / whole.rate), " at ", brief(whole.rate),
-          " per second; at the model's ", brief(format.rate), " per second they are ", rest.frames,
-          ", and the seed is to be of ", args.seed_frames, " (",
+          " per second; at the model's ", brief(format.rate), " per second that makes ", rest.frames,
+          ", but --seed-frames is ", args.seed_frames, " (",
           duration(static_cast<double>(args.seed_frames) / format.rate), "): give a longer clip",
           args.from.empty() ? "" : ", an earlier --from", ", or --seed-frames ", rest.frames, " at most");
   const std::size_t after = std::min(args.frames, rest.frames - args.seed_frames);
@@ -64,8 +64,8 @@ Prior read_prior(const CompleteArgs& args, const motion::MotionFormat& format) {
       fmt::format("frame {}{}", from, posed > 0 && from == posed ? " (after the T-pose at its start)" : "")};
 }
 
-/// The frames after the seed, counted from 1, at which the motion-prediction papers measure, as near as the
-/// rate has them; those that are further off than a fifth are left out.
+/// The times in ms at which the motion-prediction papers measure, each with the nearest frame after the seed,
+/// counted from 1. Times that no frame matches within a fifth are left out.
 std::vector<std::pair<int, std::size_t>> measured_frames(double rate, std::size_t frames) {
   std::vector<std::pair<int, std::size_t>> out;
   for (const int ms : {80, 160, 320, 400, 560, 1000}) {
@@ -78,7 +78,7 @@ std::vector<std::pair<int, std::size_t>> measured_frames(double rate, std::size_
   return out;
 }
 
-/// Frames that the errors are taken over: a second of what the clip does next.
+/// The number of frames that errors are computed over: at most a second of the clip's own continuation.
 std::size_t measured_length(const Prior& prior) {
   const auto second = static_cast<std::size_t>(std::max(1L, std::lround(prior.seed.rate)));
   return std::min(prior.truth.frames, second);
@@ -91,7 +91,7 @@ motion::Motion held(const motion::Motion& seed, std::size_t frames) {
   return out;
 }
 
-/// Errors of the continuations against what the clip does next; `made` are seed and continuation.
+/// Prints the errors of the continuations against the clip's own; `made` holds seed and continuation.
 void print_errors(const Prior& prior, const std::vector<motion::Motion>& made, std::size_t root) {
   const std::size_t frames = measured_length(prior), count = made.size();
   const auto times = measured_frames(prior.seed.rate, frames);
@@ -99,7 +99,7 @@ void print_errors(const Prior& prior, const std::vector<motion::Motion>& made, s
     fmt::print("no error against the clip: {}\n",
                prior.truth.frames == 0
                    ? "it ends with the seed"
-                   : "it ends too soon, or the model's rate is too low for the times at which one measures");
+                   : "it ends too soon, or the model's rate is too low for the times that are measured");
     return;
   }
   const motion::Motion truth = slice(prior.truth, 0, frames);
@@ -124,17 +124,18 @@ void print_errors(const Prior& prior, const std::vector<motion::Motion>& made, s
     if (count > 1) rows[3].push_back(fmt::format("{:.2f}", best[frame - 1]));
   }
   fmt::print(
-      "error against what the clip does next (Euler angles as in the motion-prediction papers, over {}):\n",
+      "error against the clip's own continuation (Euler angles as in the motion-prediction papers, over "
+      "{}):\n",
       counted(frames, "frame"));
   print_table(head, rows, "l" + std::string(times.size(), 'r'), "  ");
 }
 
-/// What a page and a picture show of a motion that begins with the seed.
+/// A motion that begins with the seed, for the page and the picture.
 view::ViewedMotion viewed(const std::string& title, const motion::Motion& motion, std::size_t seed_frames,
                           double rate) {
   const double model_rate = motion.rate;
   view::ViewedMotion out{title, for_page(motion, rate), seed_frames};
-  if (rate > 0)  // those up to the seed's last one
+  if (rate > 0)  // the frames up to the seed's last one
     out.seed_frames = motion::resampled_frames(seed_frames, model_rate, rate);
   return out;
 }
@@ -145,7 +146,7 @@ int complete(const CompleteArgs& args) {
   const fs::path file = model_file(args.model);
   const Context context;
   const Dvgan model = Dvgan::load(context, file);
-  model.rnn();  // refuses where there is none
+  model.rnn();  // throws Error if there is no RNN generator
   const motion::MotionFormat& format = model.format();
   const Prior prior = read_prior(args, format);
   warn_of_unknown_words(format.vocabulary, args.text);
@@ -171,7 +172,7 @@ int complete(const CompleteArgs& args) {
 
   const double seconds = static_cast<double>(args.frames) / format.rate;
   fmt::print("\"{}\": {}\n", args.text, named(job.files));
-  fmt::print("wrote {}: {} of {} from {} on, then {} ({}) that the model made, seed {}\n",
+  fmt::print("wrote {}: {} of {} from {} on, then {} generated frames ({}), seed {}\n",
              counted(args.count, "BVH file"), counted(prior.seed.frames, "frame"), clip, prior.from,
              args.frames, duration(seconds), args.seed);
   print_errors(prior, *made, format.layout.root());
@@ -179,13 +180,13 @@ int complete(const CompleteArgs& args) {
   std::vector<view::ViewedMotion> shown;
   if (prior.truth.frames > 0)
     shown.push_back(
-        viewed(clip + ", as it goes on", join(prior.seed, prior.truth), prior.seed.frames, args.rate));
+        viewed(clip + ", ground truth", join(prior.seed, prior.truth), prior.seed.frames, args.rate));
   for (std::size_t i = 0; i < made->size(); ++i)
     shown.push_back(
         viewed(args.count > 1 ? fmt::format("{} ({})", args.text, args.first_sample + i) : args.text,
                (*made)[i], prior.seed.frames, args.rate));
   if (prior.seed.frames + args.frames > shown_frames(format.rate, args.rate))
-    fmt::print("only the first {} frames of each motion are shown below\n", most_shown);
+    fmt::print("only the first {} frames of each motion are shown\n", most_shown);
   if (!args.html.empty()) show_page(args.html, shown, clip + " completed by " + file.string());
   if (!args.png.empty()) show_strip(args.png, shown);
   return 0;
@@ -194,41 +195,40 @@ int complete(const CompleteArgs& args) {
 const Verb complete_verb{"complete", [](CLI::App& app, Job& job) {
   CLI::App* verb = app.add_subcommand(
       "complete",
-      "Go on from the first frames of a clip, as a text says.\n"
-      "Each file holds the seed, at the model's rate and in the clip's own body, and then what the model "
-      "made\n"
-      "(CLIP_walk-slowly_000.bvh); files that are there are replaced. Where the clip itself goes on, errors\n"
-      "against it are printed. Needs a model with an RNN generator.");
+      "Continue the first frames of a clip, guided by a text.\n"
+      "Each file (CLIP_walk-slowly_000.bvh) contains the seed frames, at the model's rate and with the\n"
+      "clip's bone lengths, then the generated frames; existing files are replaced. While the clip itself\n"
+      "continues, errors against it are printed. Needs a model with an RNN generator.");
   const auto args = std::make_shared<CompleteArgs>();
   const auto option = [&](const char* name, auto& member, const char* text) {
     return verb->add_option(name, member, text);
   };
-  option("MODEL", args->model, "model file, or the --save folder of a training")->required()->type_name("");
-  option("--prior", args->prior, "BVH clip to go on from, of the model's skeleton")
+  option("MODEL", args->model, "model file, or the --save folder of a training run")->required()->type_name("");
+  option("--prior", args->prior, "BVH clip to continue, with the model's skeleton")
       ->required()
       ->type_name("CLIP.bvh");
-  option("--text", args->text, "what to do next")->required()->type_name("TEXT");
+  option("--text", args->text, "description of what comes next")->required()->type_name("TEXT");
   option("--seed-frames", args->seed_frames, "frames of the clip to start with, at the model's rate")
       ->check(positive())
       ->capture_default_str();
-  option("--frames", args->frames, "frames to make after them; any number")
+  option("--frames", args->frames, "frames to generate after them; any number")
       ->check(positive())
       ->capture_default_str();
   option("--from", args->from,
          "where in the clip the seed starts: a frame (240) or seconds (2.5s) [its start]")
       ->type_name("FRAME");
-  option("--count", args->count, "different continuations")->check(positive())->capture_default_str();
-  option("--seed", args->seed, "another seed gives other continuations")
+  option("--count", args->count, "number of different continuations")->check(positive())->capture_default_str();
+  option("--seed", args->seed, "random seed; another one gives other continuations")
       ->check(not_negative())
       ->capture_default_str();
-  option("--first-sample", args->first_sample, "number of the first continuation of the seed")
+  option("--first-sample", args->first_sample, "number of the first sample")
       ->check(not_negative())
       ->capture_default_str();
   option("--rate", args->rate, "frames per second of the files, by interpolation [the model's]")
       ->check(CLI::Range(1e-3, 1e4))
       ->type_name("HZ");
-  option("--out", args->out, "folder to write to; made if missing")->capture_default_str()->type_name("DIR");
-  option("--html", args->html, "also write a page: the clip, then the continuations beside it")
+  option("--out", args->out, "folder to write to; created if missing")->capture_default_str()->type_name("DIR");
+  option("--html", args->html, "also write an HTML page: the clip next to its continuations")
       ->type_name("FILE");
   option("--png", args->png, "also write a picture of their poses")->type_name("FILE");
   verb->callback([&job, args] { job = [args] { return complete(*args); }; });

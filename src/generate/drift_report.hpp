@@ -1,11 +1,11 @@
-// How generated motion holds out over time, over all motions of a command.
+// Drift of generated motion over time, averaged over all motions of a command.
 #pragma once
 #include "shared/command.hpp"
 #include "motiongan/metrics/drift.hpp"
 
 namespace motiongan::command {
 
-/// The mean of what DriftMeters measured, second by second. All motions have the same frames.
+/// The mean of several DriftMeters, second by second. All motions have the same number of frames.
 class DriftReport {
  public:
   void add(const DriftMeter& meter) {
@@ -15,7 +15,7 @@ class DriftReport {
     ++motions_;
   }
 
-  /// About ten rows, each the mean of some seconds.
+  /// Prints at most ten rows, each the mean of consecutive seconds.
   void print() const {
     if (sums_.empty()) return;
     const std::size_t parts = std::min<std::size_t>(10, sums_.size());
@@ -32,16 +32,16 @@ class DriftReport {
       table.push_back({end - begin == 1 ? fmt::format("{}", begin) : fmt::format("{} to {}", begin, end - 1),
                        fmt::format("{:.2f}", part.mean), fmt::format("{:.2f}", part.spread),
                        fmt::format("{:.2f}", part.speed),
-                       std::isnan(part.outside) ? "not known" : fmt::format("{:.1f}%", 100 * part.outside)});
+                       std::isnan(part.outside) ? "unknown" : fmt::format("{:.1f}%", 100 * part.outside)});
     }
     fmt::print(
         "drift of {}, in standard deviations of the training data (mean: distance from the training mean;\n"
-        "spread: within a second; speed: per second; outside: share of values that training never had):\n",
+        "spread: within a second; speed: per second; outside: values beyond the training range):\n",
         counted(motions_, "motion"));
     print_table({"second", "mean", "spread", "speed", "outside"}, table, "rrrrr", "  ");
   }
 
-  /// A row a second, as DriftMeter::write_csv.
+  /// A row per second, as DriftMeter::write_csv.
   void write_csv(const fs::path& path) const {
     std::string text = "second,frames,mean,spread,speed,outside\n";
     const double n = static_cast<double>(motions_);

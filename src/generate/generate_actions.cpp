@@ -1,4 +1,4 @@
-// motiongan generate, for a model of classes: from a second of motion on, by a schedule.
+// motiongan generate for class-conditioned models: continues a second of motion by a schedule of classes.
 #include "generate/generate_actions.hpp"
 
 #include "shared/action_files.hpp"
@@ -12,9 +12,9 @@
 namespace motiongan::command {
 namespace {
 
-constexpr std::size_t characters_at_a_time = 64;  // characters
+constexpr std::size_t characters_at_a_time = 64;
 
-/// How long it goes on, in seconds; 0 where the schedule says so.
+/// Duration in seconds; 0 if the schedule gives it.
 double asked_seconds(const ActionGenerateArgs& args, double rate) {
   require(args.seconds <= 0 || args.frames == 0, "give --seconds or --frames, not both");
   if (args.frames > 0) return static_cast<double>(args.frames) / rate;
@@ -38,26 +38,25 @@ std::vector<GivenPrior> find_priors(const ActionGenerateArgs& args, const CLI::A
       for (const double at : args.at.empty() ? std::vector<double>{0} : args.at)
         given.push_back(read_prior(clip, format, data, at));
     require(args.count == 1 || model.options().noise_dim > 0, "--count ", args.count,
-            ": this model has no noise, so that a prior and a class give one motion; give several clips with "
-            "--from, ",
-            "several times with --at, or leave --from out for priors drawn from the training's clips");
+            ": this model has no noise, so a prior and a class give only one motion; repeat --from or --at, ",
+            "or leave --from out to draw priors from the run's test clips");
     for (const GivenPrior& prior : given) out.insert(out.end(), args.count, prior);
     return out;
   }
   require(args.at.empty(), "--at needs --from: it says where in that clip the motion starts");
   const fs::path run = fs::is_directory(args.model) ? fs::path(args.model) : file.parent_path();
   require(fs::exists(RunFiles{run}.split()),
-          "give the second to go on from with --from CLIP: ", file.string(),
-          " lies in no folder of a run, from whose clips one could be drawn");
+          "give the second to continue with --from CLIP: ", file.string(),
+          " is not in the folder of a run from whose clips one could be drawn");
   take_data_of_run(
       data, verb, run,
-      "give the second to go on from with --from CLIP, or the clips to draw one from with --data FOLDER");
+      "give the second to continue with --from CLIP, or the clips to draw one from with --data FOLDER");
   if (!args.data.empty()) data.folder = args.data, data.procedural = 0;
   fill_in_choices(data);
   return draw_priors(run, format, data, label, args.seed, args.first_sample, args.count);
 }
 
-/// The generator's attention in the first second of the first few characters.
+/// Draws the generator's attention over the first second of up to four characters.
 void draw_attention(const ActionGenerateArgs& args, const ActionGan& model,
                     const std::vector<GivenPrior>& priors, std::size_t label) {
   const motion::PositionFormat& format = model.format();
@@ -86,9 +85,9 @@ void draw_attention(const ActionGenerateArgs& args, const ActionGan& model,
   make_folder_of(args.attention_map);
   write_png(args.attention_map,
             view::heat_map(maps, {.title = "generator's attention, class " + format.classes[label],
-                                  .row_label = "frame that looks",
-                                  .column_label = "frame looked at"}));
-  fmt::print("wrote {}: what frames of the first second look at (gamma {})\n", args.attention_map,
+                                  .row_label = "attending frame",
+                                  .column_label = "attended frame"}));
+  fmt::print("wrote {}: which frames of the first second attend to which (gamma {})\n", args.attention_map,
              brief(model.generator().attention()->gamma.item(), 3));
 }
 
@@ -103,29 +102,29 @@ std::string name_of(const motion::PositionFormat& format, const ActionSchedule& 
 
 void add_action_options(CLI::App& verb, ActionGenerateArgs& a) {
   const auto option = [&](const char* name, auto& member, const char* text) {
-    return verb.add_option(name, member, text)->group("Models of classes");
+    return verb.add_option(name, member, text)->group("Class-conditioned models");
   };
-  option("--class", a.schedule, "what to do: a class, or one after another, such as walk:3s,run:90 (frames)")
+  option("--class", a.schedule, "a class, or a sequence of classes such as walk:3s,run:90 (frames)")
       ->type_name("SCHEDULE");
-  option("--seconds", a.seconds, "how long, where --class does not say [10]")->check(positive());
+  option("--seconds", a.seconds, "duration, if --class does not give it [10]")->check(positive());
   option("--from", a.from,
-         "BVH, CSV or NPY clip with the second to go on from; may be given several times [drawn "
-         "from the clips that the training kept for testing]")
+         "BVH, CSV or NPY clip with the second to continue; may be repeated [drawn from the run's test "
+         "clips]")
       ->type_name("CLIP")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  option("--at", a.at, "where in the clip that second starts, in seconds; may be given several times [0]")
+  option("--at", a.at, "where in the clip that second starts, in seconds; may be repeated [0]")
       ->check(CLI::Range(0.0, 1e6))
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  option("--data", a.data, "folder of the clips to draw from [that of the training]")->type_name("FOLDER");
-  option("--bones", a.bones, "bone list of CSV and NPY clips [bones.tsv beside them]")->type_name("FILE");
+  option("--data", a.data, "folder of the clips to draw from [that of the run]")->type_name("FOLDER");
+  option("--bones", a.bones, "bone list of CSV and NPY clips [bones.tsv next to them]")->type_name("FILE");
   add_format_option(verb, a.format);
-  verb.get_option("--format")->group("Models of classes");
-  verb.add_flag("--prior,!--no-prior", a.with_prior, "begin each file with the second that was given [on]")
-      ->group("Models of classes");
+  verb.get_option("--format")->group("Class-conditioned models");
+  verb.add_flag("--prior,!--no-prior", a.with_prior, "begin each file with the given second [on]")
+      ->group("Class-conditioned models");
   option("--attention-map", a.attention_map,
-         "picture to write: which frames of the first second look at which")
+         "picture to write: which frames of the first second attend to which")
       ->type_name("FILE.png");
 }
 
@@ -167,7 +166,7 @@ int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const
     std::vector<ActionPrior> some;
     for (std::size_t i = 0; i < count; ++i) some.push_back(priors[first + i].prior);
     const std::vector<motion::PositionClip> clips =
-        generate(model, some, schedule,
+        model.generate(some, schedule,
                  {.with_prior = args.with_prior,
                   .seed = args.seed,
                   .first_sample = static_cast<std::uint32_t>(args.first_sample + first)});
@@ -189,11 +188,11 @@ int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const
   std::vector<std::vector<std::string>> rows;
   for (std::size_t i = 0; i < std::min<std::size_t>(files.size(), 20); ++i)
     rows.push_back({files[i].string(), priors[i].from});
-  print_table({"file", "goes on from"}, rows, "ll");
+  print_table({"file", "continues"}, rows, "ll");
   if (files.size() > rows.size()) fmt::print("and {} more\n", files.size() - rows.size());
   const std::size_t made = frames_of(schedule);
-  fmt::print("wrote {}: {}{} ({}) that the model made\n", counted(files.size(), "file"),
-             args.with_prior ? fmt::format("{} that were given, then ", counted(format.frames, "frame")) : "",
+  fmt::print("wrote {}: {}{} generated frames ({})\n", counted(files.size(), "file"),
+             args.with_prior ? fmt::format("{}, then ", counted(format.frames, "given frame")) : "",
              made, duration(static_cast<double>(made) / format.rate));
   if (!args.attention_map.empty()) draw_attention(args, model, priors, first_label);
   if (!args.html.empty()) show_page(args.html, shown, "generated by " + file.string());

@@ -1,4 +1,4 @@
-// motiongan generate, for a model of classes.
+// motiongan generate for class-conditioned models.
 #pragma once
 #include "shared/action_data.hpp"
 
@@ -10,20 +10,20 @@ struct ActionGenerateArgs {
   std::string schedule, format = "bvh", data, bones, attention_map;
   double seconds = 0;
   bool with_prior = true;
-  // As for texts.
+  // As for text-conditioned models.
   std::string model, out, html, png;
   std::size_t count = 1, frames = 0, first_sample = 0;
   std::uint64_t seed = 1;
   double rate = 0;
 };
 
-/// Adds the options that only a model of classes has.
+/// Adds the options that only class-conditioned models have.
 void add_action_options(CLI::App& verb, ActionGenerateArgs& args);
 
-/// The names of those that `verb` was given.
+/// The names of those options that the command line gives, separated by commas.
 std::string given_action_options(const CLI::App& verb);
 
-/// `file` holds an attention model.
+/// Generates with the class-conditioned model in `file`. Returns the exit status.
 int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const fs::path& file);
 
 }  // namespace motiongan::command

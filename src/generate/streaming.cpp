@@ -1,4 +1,4 @@
-// Motion of RNN models that is written while it is made.
+// Writes the motion of RNN models while it is generated.
 #include "generate/streaming.hpp"
 
 #include <cmath>
@@ -12,9 +12,9 @@
 namespace motiongan::command {
 namespace {
 
-constexpr std::size_t at_a_time = 64;  // motions, and frames
+constexpr std::size_t at_a_time = 64;  // motions per stream, and frames per step
 
-/// A BVH file that grows, at the rate of the file.
+/// A BVH file written piece by piece, resampled to the file's rate.
 class GrowingFile {
  public:
   GrowingFile(const fs::path& path, const motion::Skeleton& skeleton, std::size_t frames, double from,
@@ -35,7 +35,7 @@ struct Growing {
   motion::Motion kept;
 };
 
-/// The job for some of its motions; false where a signal asked to stop.
+/// Runs the job for `count` motions from `first` on. Returns false if a signal requested a stop.
 bool write_some(const Dvgan& model, const StreamJob& job, std::size_t first, std::size_t count,
                 DriftReport* drift, const std::function<void(std::size_t)>& made,
                 std::vector<motion::Motion>& all_kept) {
@@ -109,7 +109,7 @@ std::size_t shown_frames(double model_rate, double rate) {
 }
 
 int stopped(std::size_t complete) {
-  fmt::print(stderr, "\nmotiongan: stopped; {} complete, those that were being made are not kept\n",
+  fmt::print(stderr, "\nmotiongan: stopped; {} complete, incomplete files are not kept\n",
              complete == 1 ? "1 file is" : fmt::format("{} files are", complete));
   return 128 + caught_signal();
 }

@@ -1,4 +1,4 @@
-// motiongan synth: the built-in procedural motion as files.
+// motiongan synth: writes the built-in procedural motion as files.
 #include "shared/command.hpp"
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/procedural/procedural.hpp"
@@ -14,7 +14,7 @@ struct SynthArgs {
 
 int synthesise(const SynthArgs& args) {
   const fs::path folder = args.folder;
-  require(args.options.clips > 0, "--clips 0 leaves nothing to write; give 1 or more");
+  require(args.options.clips > 0, "--clips is 0, expected at least 1");
   make_folder(folder);
   std::string captions = "# clip id <TAB> description; a clip may have several lines\n";
   std::size_t lines = 0;
@@ -40,15 +40,15 @@ const Verb synth_verb{"synth", [](CLI::App& app, Job& job) {
       app.add_subcommand("synth", "Write the built-in procedural motion as BVH files with captions");
   const auto args = std::make_shared<SynthArgs>();
   verb->add_option("DIR", args->folder,
-                   "folder to write to; made if missing, files of the same names are replaced")
+                   "folder to write to; created if missing, files of the same names are replaced")
       ->required()
       ->type_name("");
-  verb->add_option("--clips", args->options.clips, "number of clips; the actions take turns")
+  verb->add_option("--clips", args->options.clips, "number of clips, cycling through the actions")
       ->check(not_negative())
       ->capture_default_str();
   verb->add_option("--seconds", args->options.seconds, "length of each clip")->capture_default_str();
   verb->add_option("--rate", args->options.rate, "frames per second")->capture_default_str();
-  verb->add_option("--seed", args->options.seed, "another seed gives other performers")
+  verb->add_option("--seed", args->options.seed, "random seed; another one gives other performers")
       ->check(not_negative())
       ->capture_default_str();
   verb->callback([&job, args] { job = [args] { return synthesise(*args); }; });

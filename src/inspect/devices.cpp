@@ -1,4 +1,4 @@
-// motiongan devices: which OpenCL devices there are.
+// motiongan devices: lists the OpenCL devices.
 #include <cstdlib>
 #include <optional>
 
@@ -14,9 +14,8 @@ std::string gibibytes(cl_ulong bytes) {
 int list_devices() {
   const std::vector<Device> devices = all_devices();
   const char* wish = std::getenv("MOTIONGAN_DEVICE");
-  // Without devices, or where none fits the wish, this throws and says what to do.
   std::optional<Device> chosen;
-  if (devices.empty()) choose_device(devices, "");
+  if (devices.empty()) choose_device(devices, "");  // throws and says what to do
   try {
     chosen = choose_device(devices, wish ? wish : "");
   } catch (const Error&) {
@@ -29,15 +28,15 @@ int list_devices() {
                     d.has_double ? "yes" : "no"});
   print_table({"", "kind", "name", "platform", "version", "units", "memory", "double"}, rows, "lllllrrl");
   if (!chosen)
-    throw Error("none of these is \"", wish ? wish : "",
-                "\"; --device and MOTIONGAN_DEVICE take cpu, gpu, a part of a name, or NAME:index");
-  fmt::print("* is the one that is taken{}; --device WISH or MOTIONGAN_DEVICE=WISH picks another.\n",
+    throw Error("none of these devices matches \"", wish ? wish : "",
+                "\"; --device and MOTIONGAN_DEVICE take cpu, gpu, part of a name, or NAME:index");
+  fmt::print("* is the selected device{}; choose another with --device or MOTIONGAN_DEVICE.\n",
              wish && *wish ? fmt::format(" for \"{}\"", wish) : "");
   return 0;
 }
 
 const Verb devices_verb{"devices", [](CLI::App& app, Job& job) {
-  CLI::App* verb = app.add_subcommand("devices", "List the OpenCL devices and mark the one that is taken");
+  CLI::App* verb = app.add_subcommand("devices", "List the OpenCL devices and mark the selected one");
   verb->callback([&job] { job = list_devices; });
 }};
 

@@ -1,4 +1,4 @@
-// motiongan info: what a file or a folder holds.
+// motiongan info: shows what a file or a folder contains.
 #include "inspect/info.hpp"
 
 #include "motiongan/io/safetensors.hpp"
@@ -39,13 +39,13 @@ void print_clip(const fs::path& file) {
   if (clip.frames == 0) return;
   const std::size_t posed = motion::t_pose_frames(clip);
   print_fact("first frame", posed > 0
-                                ? fmt::format("T-pose: {} put before the motion", counted(posed, "frame"))
-                                : "the motion's own (no T-pose)");
+                                ? fmt::format("T-pose: {} before the motion", counted(posed, "frame"))
+                                : "part of the motion (no T-pose)");
   const auto root = static_cast<std::size_t>(motion::moving_root(motion));
   double travelled = 0;
   for (std::size_t f = posed + 1; f < clip.frames; ++f)
     travelled += motion::length(motion::subtract(motion.position(f, root), motion.position(f - 1, root)));
-  print_fact("travel", fmt::format("{} goes {} units, from {} to {}", clip.skeleton.joints[root].name,
+  print_fact("travel", fmt::format("{} moves {} units, from {} to {}", clip.skeleton.joints[root].name,
                                    brief(travelled), vector_text(motion.position(posed, root)),
                                    vector_text(motion.position(clip.frames - 1, root))));
 }
@@ -59,8 +59,7 @@ void print_log(const fs::path& file, const std::string& png) {
   if (std::find(log.columns.begin(), log.columns.end(), "wasserstein") != log.columns.end()) {
     const CurveSummary w = summarise(log.column("wasserstein"));
     fmt::print(
-        "the Wasserstein estimate was highest at iteration {:.0f} ({}), at the end it is {} (means over "
-        "rows)\n",
+        "the Wasserstein estimate peaked at iteration {:.0f} ({}) and ended at {} (running means)\n",
         log.column("iteration")[w.peak_at], brief(w.peak), brief(w.last));
   }
   if (png.empty()) return;
@@ -93,14 +92,14 @@ int info(const InfoArgs& args) {
 
 const Verb info_verb{"info", [](CLI::App& app, Job& job) {
   CLI::App* verb = app.add_subcommand("info",
-                                      "Say what a file or a folder holds: a model or checkpoint "
-                                      "(.safetensors), the folder of a run, a BVH clip,\n"
-                                      "a folder of clips with their captions, the log.csv of a training.");
+                                      "Show what a file or a folder contains: a model or checkpoint "
+                                      "(.safetensors), the folder of a run, a BVH\n"
+                                      "clip, a folder of clips with their captions, the log.csv of a run.");
   const auto args = std::make_shared<InfoArgs>();
   verb->add_option("PATH", args->path, "file or folder")->required()->type_name("");
-  verb->add_option("--captions", args->captions, "for a folder of clips [captions.tsv in it]")
+  verb->add_option("--captions", args->captions, "captions of a folder of clips [captions.tsv in it]")
       ->type_name("FILE");
-  verb->add_option("--png", args->png, "for a log.csv: draw its curves")->type_name("FILE");
+  verb->add_option("--png", args->png, "picture to write: the curves of a log.csv")->type_name("FILE");
   verb->callback([&job, args] { job = [args] { return info(*args); }; });
 }};
 

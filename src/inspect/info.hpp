@@ -4,11 +4,11 @@
 
 namespace motiongan::command {
 
-/// A safetensors file: a model, a checkpoint or any other.
+/// Prints a safetensors file: a model, a checkpoint or any other.
 void print_tensors(const fs::path& file);
-/// The folder of a training run.
+/// Prints the folder of a training run.
 void print_run(const fs::path& folder);
-/// A folder of clips and their captions.
+/// Prints a folder of clips and their captions.
 void print_folder(const fs::path& folder, const fs::path& captions);
 
 }  // namespace motiongan::command

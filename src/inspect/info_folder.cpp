@@ -1,4 +1,4 @@
-// What a folder of clips holds: skeletons, rates, lengths, and its captions by number of frames.
+// Prints what a folder of clips contains: skeletons, rates, lengths, and captions by number of frames.
 #include <algorithm>
 #include <map>
 
@@ -40,7 +40,7 @@ ClipFacts read_facts(const fs::path& file, const std::string& id, const motion::
   return out;
 }
 
-/// "128 clips of 31 joints (96 channels)" for each kind of clip there is.
+/// Prints the number and length of the clips, and their skeletons and rates.
 void print_kinds(const std::vector<ClipFacts>& clips) {
   std::map<std::string, std::size_t> skeletons;
   std::map<std::string, std::string> names;
@@ -64,7 +64,7 @@ void print_kinds(const std::vector<ClipFacts>& clips) {
                                   duration(longest->seconds()), longest->id));
   for (const auto& [key, count] : skeletons)
     print_fact("skeleton", fmt::format("{}: {}", counted(count, "clip"), names[key]));
-  if (skeletons.size() > 1) print_fact("", "a training needs one skeleton");
+  if (skeletons.size() > 1) print_fact("", "training needs clips of one skeleton");
   for (const auto& [rate, count] : rates)
     print_fact("rate", fmt::format("{}: {} frames per second", counted(count, "clip"), brief(rate)));
   if (posed > 0)
@@ -72,7 +72,7 @@ void print_kinds(const std::vector<ClipFacts>& clips) {
                fmt::format("{} begin with a T-pose, which is not counted here", counted(posed, "clip")));
 }
 
-/// How many clips hold a window of the sizes that people train with.
+/// Prints how many clips are long enough for common window sizes.
 void print_windows(const std::vector<ClipFacts>& clips) {
   std::vector<std::vector<std::string>> rows;
   for (const auto& [frames, rate] :
@@ -85,7 +85,7 @@ void print_windows(const std::vector<ClipFacts>& clips) {
     rows.push_back({fmt::format("--frames {} --rate {}", frames, brief(rate)), duration(window),
                     std::to_string(count), count > 0 ? duration(seconds) : "-"});
   }
-  fmt::print("\nclips that hold a window\n");
+  fmt::print("\nclips that are long enough for a window\n");
   print_table({"window", "length", "clips", "in all"}, rows, "lrrr", "  ");
 }
 
@@ -127,8 +127,8 @@ void print_folder(const fs::path& folder, const fs::path& given) {
   fmt::print("{}: a folder of clips\n", folder.string());
   print_kinds(clips);
   print_fact("captions",
-             file.empty()  ? "none (no captions.tsv, no --captions): made from the names of the files"
-             : unnamed > 0 ? fmt::format("from {}; {} not in it, called by their names (in brackets)",
+             file.empty()  ? "none (no captions.tsv, no --captions): taken from file names"
+             : unnamed > 0 ? fmt::format("from {}; {} not in it, captioned by their file names (in parentheses)",
                                          file.string(), counted(static_cast<std::size_t>(unnamed), "clip"))
                            : "from " + file.string());
   print_windows(clips);

@@ -1,4 +1,4 @@
-// What safetensors files hold: models, checkpoints, runs and others.
+// Prints the contents of safetensors files: models, checkpoints, runs and others.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -41,7 +41,7 @@ void print_wrapped(std::string_view name, const std::vector<std::string>& texts,
   if (!line.empty()) flush();
 }
 
-/// The options of a run, as the command or the library writes them into its files.
+/// Prints options, as the command or the library stores them in files.
 void print_options(std::string_view fact, const std::string& json) {
   const auto options = nlohmann::json::parse(json, nullptr, false);
   if (!options.is_object()) return;
@@ -60,17 +60,17 @@ void print_options(std::string_view fact, const std::string& json) {
 
 void print_positions(const motion::PositionFormat& format) {
   const double second = static_cast<double>(format.frames) / format.rate;
-  print_fact("motion", fmt::format("{} frames from {} before, at {} per second ({})", format.frames,
+  print_fact("motion", fmt::format("{} frames from the {} before them, at {} per second ({})", format.frames,
                                    format.frames, brief(format.rate), duration(second)));
   print_fact("skeleton",
-             fmt::format("{}, root {}; {} of a pose change{}", counted(format.skeleton().size(), "joint"),
-                         format.skeleton().joints.front().name, counted(format.dof(), "number"),
-                         format.layout.root_track() ? ", steps, turns and height of the root among them"
-                                                    : "; the root stays where it is"));
+             fmt::format("{}, root {}; {} per pose vary{}", counted(format.skeleton().size(), "joint"),
+                         format.skeleton().joints.front().name, counted(format.dof(), "value"),
+                         format.layout.root_track() ? ", including the root's steps, turns and height"
+                                                    : "; the root stays in place"));
   print_wrapped("classes", format.classes, ", ");
 }
 
-/// For a model of classes, or of texts.
+/// Prints the motion format of a class-conditioned or a text-conditioned model.
 void print_format(const io::SafeTensors& file, const std::string& where) {
   const auto text = file.metadata.find("format");
   require(text != file.metadata.end(), where, ": the model has no motion format in its metadata");
@@ -83,10 +83,10 @@ void print_format(const io::SafeTensors& file, const std::string& where) {
   print_fact("motion", fmt::format("{} frames at {} per second ({})", format.frames, brief(format.rate),
                                    duration(static_cast<double>(format.frames) / format.rate)));
   print_fact("skeleton",
-             fmt::format("{}, root {}; {} of a pose change{}", counted(format.skeleton().size(), "joint"),
-                         format.skeleton().joints[format.layout.root()].name, counted(format.dof(), "number"),
-                         format.layout.root_position() ? ", the root's position among them"
-                                                       : "; the root stays where it is"));
+             fmt::format("{}, root {}; {} per pose vary{}", counted(format.skeleton().size(), "joint"),
+                         format.skeleton().joints[format.layout.root()].name, counted(format.dof(), "value"),
+                         format.layout.root_position() ? ", including the root's position"
+                                                       : "; the root stays in place"));
   print_fact("words", fmt::format("{}, and {} for all others:", format.vocabulary.size() - 1,
                                   motion::Vocabulary::unknown));
   const std::vector<std::string>& words = format.vocabulary.words();

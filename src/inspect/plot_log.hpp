@@ -1,4 +1,4 @@
-// The course of a training: its curves as a picture, and in a few numbers.
+// The curves of a training log, as a picture and in a few numbers.
 #pragma once
 #include <algorithm>
 
@@ -7,7 +7,7 @@
 
 namespace motiongan::command {
 
-/// Mean of the values around each one, over `reach` on either side.
+/// Running mean over `reach` values on either side.
 inline std::vector<double> smoothed(const std::vector<double>& values, std::size_t reach) {
   std::vector<double> out;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -19,20 +19,20 @@ inline std::vector<double> smoothed(const std::vector<double>& values, std::size
   return out;
 }
 
-/// Where a noisy curve was highest, and where it ended.
+/// Peak and end of a noisy curve.
 struct CurveSummary {
   double peak = 0, last = 0;
   std::size_t peak_at = 0;  ///< row
 };
 
-/// Of at least one value; single values are noisy, so means over a fiftieth of the curve are taken.
+/// Needs at least one value. Single values are noisy, so running means over a fiftieth of the curve are used.
 inline CurveSummary summarise(const std::vector<double>& values) {
   const std::vector<double> smooth = smoothed(values, values.size() / 100);
   const auto peak = std::max_element(smooth.begin(), smooth.end());
   return {*peak, smooth.back(), static_cast<std::size_t>(peak - smooth.begin())};
 }
 
-/// Wasserstein estimate and penalty (times 10, its usual weight) over the iterations.
+/// Plots Wasserstein estimate and gradient penalty (times 10, its usual weight) over the iterations.
 inline view::Image plot_log(const CsvTable& log, const std::string& title) {
   const std::vector<double> x = log.column("iteration");
   std::vector<double> penalty = log.column("penalty");

@@ -1,4 +1,4 @@
-// motiongan search: the clips of a collection that move as a text says.
+// motiongan search: finds the clips of a collection whose motion matches a text.
 #include <future>
 #include <nlohmann/json.hpp>
 
@@ -21,11 +21,11 @@ struct SearchArgs {
   bool windows = false;
 };
 
-/// What was found, as it is told.
+/// A result, as it is printed.
 struct Result {
   std::string clip, path;
   std::vector<std::string> captions;
-  double begin = 0, end = 0;  // seconds of the file
+  double begin = 0, end = 0;  // seconds from the start of the file
   SearchHit hit;
 };
 
@@ -36,7 +36,7 @@ struct Found {
   double median = 0;
 };
 
-/// A clip is called by its path below the collection, without extension.
+/// A clip's name: its path below the collection, without extension.
 std::string clip_name(const std::string& path) { return fs::path(path).replace_extension().generic_string(); }
 
 std::vector<std::string> captions_of(const motion::Captions& captions, const std::string& path) {
@@ -137,7 +137,8 @@ nlohmann::ordered_json to_json(const Found& found, const SearchArgs& args,
   return json;
 }
 
-/// The frames of a hypothesis that lie on those of a window; before its first and after its last it stands.
+/// The hypothesis moved by its shift, frame by frame on a window; outside its range it holds its first or
+/// last frame.
 motion::Motion aligned(const motion::Motion& hypothesis, int shift) {
   const int last = static_cast<int>(hypothesis.frames) - 1;
   const auto frame = [&](int t) {
@@ -148,10 +149,10 @@ motion::Motion aligned(const motion::Motion& hypothesis, int shift) {
   return out;
 }
 
-/// Each result's window beside its nearest hypotheses, frame by frame as they were compared.
+/// Shows each result's window next to its nearest hypotheses, frame by frame as they were compared.
 void show_results(const Found& found, const SearchArgs& args, const motion::MotionFormat& format) {
   constexpr std::size_t most = 12;
-  constexpr double rate = 30;  // of the page; motion of few frames per second is interpolated
+  constexpr double rate = 30;  // of the page; motion at a lower rate is interpolated
   const fs::path folder =
       fs::is_directory(args.collection) ? fs::path(args.collection) : fs::path(args.collection).parent_path();
   std::vector<view::ViewedMotion> shown;
@@ -171,7 +172,7 @@ void show_results(const Found& found, const SearchArgs& args, const motion::Moti
                        shift_text(near.shift, format.rate)),
            motion::resample(aligned(format.to_motion(found.hypotheses[near.hypothesis]), near.shift), rate)});
   }
-  if (found.results.size() > most) fmt::print("only the first {} are shown below\n", most);
+  if (found.results.size() > most) fmt::print("only the first {} results are shown\n", most);
   show_page(args.html, shown, "\"" + args.text + "\" in " + args.collection,
             1 + found.results.front().hit.nearest.size());
 }
@@ -181,13 +182,12 @@ int search(const SearchArgs& args) {
   check_samples(0, args.hypotheses);
   const fs::path file = model_file(args.model);
   require(!holds_model<ActionGan>(io::SafeTensors::read(file)), file.string(),
-          " makes motion of classes; a search needs a model that makes motion for a text (motiongan train "
-          "dvgan)");
+          " generates motion for classes; a search needs a text-conditioned model (motiongan train dvgan)");
   const Context context;
   const Dvgan model = Dvgan::load(context, file);
   const motion::MotionFormat& format = model.format();
   warn_of_unknown_words(format.vocabulary, args.text);
-  // The index comes from the disk while the device makes the hypotheses.
+  // The index is read while the device generates the hypotheses.
   auto opened = std::async(std::launch::async,
                            [&] { return open_search_collection(args.collection, format, args.index); });
   GenerateOptions options;
@@ -202,7 +202,7 @@ int search(const SearchArgs& args) {
   const Found found = find(model, args, collection, std::move(hypotheses));
   if (args.json != "-") print_results(found, args, format);
   if (!args.json.empty()) {
-    // A path that is not UTF-8 shall not keep the rest from being told.
+    // Replaces what is not UTF-8 in a path, so that the rest can still be written.
     const std::string text =
         to_json(found, args, format).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
     if (args.json == "-") {
@@ -227,38 +227,38 @@ int search(const SearchArgs& args) {
 const Verb search_verb{"search", [](CLI::App& app, Job& job) {
   CLI::App* verb = app.add_subcommand(
       "search",
-      "Find the clips of a collection that move as a text says.\n"
-      "The model makes hypotheses for the text; every window of every clip is compared with all of them, at\n"
-      "shifts of up to half a window, and clips are listed by the distance of their nearest window. The\n"
-      "collection's index is kept in COLLECTION/.motiongan-search, or in the file of --index.");
+      "Find the clips of a collection whose motion matches a text.\n"
+      "The model generates hypotheses for the text; every window of every clip is compared with all of\n"
+      "them, at shifts of up to half a window, and clips are listed by the distance of their nearest\n"
+      "window. The collection's index is kept in COLLECTION/.motiongan-search, or in the file of --index.");
   const auto args = std::make_shared<SearchArgs>();
   const auto option = [&](const char* name, auto& member, const char* text) {
     return verb->add_option(name, member, text);
   };
-  option("--model", args->model, "model file, or the --save folder of a training")
+  option("--model", args->model, "model file, or the --save folder of a training run")
       ->required()
       ->type_name("MODEL");
-  option("--text", args->text, "what to look for")->required()->type_name("TEXT");
+  option("--text", args->text, "description of the motion to find")->required()->type_name("TEXT");
   option("--collection", args->collection, "folder of BVH clips of the model's skeleton, or one file")
       ->required()
       ->type_name("DIR");
-  option("--hypotheses", args->hypotheses, "motions to make for the text")
+  option("--hypotheses", args->hypotheses, "motions to generate for the text")
       ->check(positive())
       ->capture_default_str();
-  option("--seed", args->seed, "another seed makes other hypotheses")
+  option("--seed", args->seed, "random seed; another one gives other hypotheses")
       ->check(not_negative())
       ->capture_default_str();
-  option("--top", args->top, "results to list")->check(positive())->capture_default_str();
-  verb->add_flag("--windows", args->windows, "list windows: a clip may stand there more than once");
+  option("--top", args->top, "number of results")->check(positive())->capture_default_str();
+  verb->add_flag("--windows", args->windows, "list windows instead of clips; a clip may then appear more than once");
   option("--hop", args->hop, "frames between two windows of a clip, at the model's rate [half a window]")
       ->check(positive());
-  option("--captions", args->captions, "captions to list beside the clips [captions.tsv in the folder]")
+  option("--captions", args->captions, "captions to show with the clips [captions.tsv in the folder]")
       ->check(CLI::ExistingFile)
       ->type_name("FILE");
   option("--index", args->index, "where the collection's index is kept")->type_name("FILE");
   option("--json", args->json, "also write the results as JSON; -: to the terminal instead of the table")
       ->type_name("FILE");
-  option("--html", args->html, "also write a page: each clip beside its nearest hypotheses")
+  option("--html", args->html, "also write an HTML page: each clip next to its nearest hypotheses")
       ->type_name("FILE");
   option("--out", args->out, "also write the hypotheses as BVH files here")->type_name("DIR");
   verb->callback([&job, args] { job = [args] { return search(*args); }; });

@@ -1,4 +1,4 @@
-// motiongan view: clips as stick figures on a page or in a picture.
+// motiongan view: shows clips as stick figures on an HTML page or in a picture.
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/data/clip_source.hpp"
 #include "motiongan/motion/motion.hpp"
@@ -38,9 +38,9 @@ const Verb view_verb{"view", [](CLI::App& app, Job& job) {
   const auto args = std::make_shared<ViewArgs>();
   verb->add_option("FILES", args->files, "BVH files, or folders of them")->required()->type_name("");
   verb->add_option("--html", args->html,
-                   "page to write [view.html, unless --png is given]; replaced if there")
+                   "HTML page to write [view.html, unless --png is given]")
       ->type_name("FILE");
-  verb->add_option("--png", args->png, "picture to write: a row of poses for each clip; replaced if there")
+  verb->add_option("--png", args->png, "picture to write: a row of poses for each clip")
       ->type_name("FILE");
   verb->add_option("--rate", args->rate, "frames per second to show [each clip's own]")
       ->type_name("HZ")

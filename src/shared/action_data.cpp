@@ -41,7 +41,7 @@ void take_data_of_run(ActionDataArgs& args, const CLI::App& verb, const fs::path
 }
 
 std::vector<motion::LabelledMotion> procedural_clips(const ActionDataArgs& args) {
-  // Windows are two times T frames; a clip holds three.
+  // Windows have 2T frames; clips have at least 3T.
   motion::ProceduralOptions options;
   options.clips = args.procedural;
   options.seconds = std::max(10.0, 3 * static_cast<double>(args.options.frames) / args.options.rate);
@@ -71,7 +71,7 @@ void print_data(const motion::ActionDataset& data, const ActionDataArgs& args) {
   const double window = 2 * static_cast<double>(format.frames) / format.rate;
   std::size_t windows = 0;
   for (const motion::ActionClip& clip : data.train) windows += data.starts(clip);
-  std::string clips = fmt::format("{} to train on, {} kept for testing", data.train.size(), data.test.size());
+  std::string clips = fmt::format("{} for training, {} held out for testing", data.train.size(), data.test.size());
   const auto left_out = [&](std::size_t n, const std::string& why) {
     if (n > 0) clips += fmt::format("; {} left out, {}", n, why);
   };
@@ -79,7 +79,7 @@ void print_data(const motion::ActionDataset& data, const ActionDataArgs& args) {
   left_out(data.unlabelled, "without a label");
   left_out(data.other_classes, "of other classes");
   print_fact("clips", clips);
-  print_fact("windows", fmt::format("{} to train on, of 2 x {} frames at {} per second ({})", windows,
+  print_fact("windows", fmt::format("{} for training, of 2 x {} frames at {} per second ({})", windows,
                                     format.frames, brief(format.rate), duration(window)));
   std::string classes;
   for (std::size_t c = 0; c < format.classes.size(); ++c) {
@@ -89,18 +89,18 @@ void print_data(const motion::ActionDataset& data, const ActionDataArgs& args) {
     };
     classes += fmt::format("{}{} {}+{}", c > 0 ? ", " : "", format.classes[c], of(data.train), of(data.test));
   }
-  print_fact("classes", classes + " (clips to train on + for testing)");
+  print_fact("classes", classes + " (training + test clips)");
   print_fact("labels", args.procedural > 0    ? "the built-in actions"
                        : !args.options.labels.empty() ? "from " + shown(args.options.labels)
                        : args.options.folders ? "from the folders' names"
-                                              : "from file names, by " + args.options.pattern);
+                                              : "from file names, by the pattern " + args.options.pattern);
   print_fact("skeleton",
-             fmt::format("{}, root {}; {} of a pose change{}", counted(format.skeleton().size(), "joint"),
-                         format.skeleton().joints.front().name, counted(format.dof(), "number"),
-                         format.layout.root_track() ? ", steps, turns and height of the root among them"
-                                                    : "; the root stays where it is"));
+             fmt::format("{}, root {}; {} per pose vary{}", counted(format.skeleton().size(), "joint"),
+                         format.skeleton().joints.front().name, counted(format.dof(), "value"),
+                         format.layout.root_track() ? ", including the root's steps, turns and height"
+                                                    : "; the root stays in place"));
   if (data.dropped_frames > 0)
-    print_fact("first frame", counted(data.dropped_frames, "frame") + " at the start of clips left out");
+    print_fact("first frame", counted(data.dropped_frames, "frame") + " dropped at the start of clips");
 }
 
 }  // namespace motiongan::command

@@ -1,4 +1,4 @@
-// Clips with classes, as given to several verbs.
+// Options and loading of labelled clips, shared by several verbs.
 #pragma once
 #include "motiongan/data/action_dataset.hpp"
 #include "shared/captioned_data.hpp"
@@ -15,28 +15,28 @@ struct ActionDataArgs {
                       .help = "folder of BVH, CSV or NPY clips (searched recursively)",
                       .option = "FOLDER"});
     list.add(procedural, {.key = "procedural",
-                          .help = "instead of FOLDER: the number of clips of built-in motion, whose names "
-                                  "begin with their class",
+                          .help = "instead of FOLDER: number of clips of built-in motion, labelled by action",
                           .type = "CLIPS"});
     options.list_fields(list);
   }
 };
 
-/// The options that describe the clips themselves, so that other clips need their own.
+/// Options that describe the clips themselves; other clips need their own.
 inline const std::vector<std::string_view> options_of_action_clips{
     "--labels", "--folders", "--pattern", "--bones", "--test-subjects", "--classes"};
 
-/// Adds FOLDER and the options of labels and split; with `windows` also those of what a model sees.
+/// Adds FOLDER and the options of labels and split; with `windows`, also --frames, --rate and --root.
 void add_action_data_options(CLI::App& verb, ActionDataArgs& args, bool windows);
 
-/// Finds labels.tsv in the folder if nothing else gives the classes of clips, and makes paths absolute.
+/// Uses labels.tsv in the folder if no option gives the labels, and makes paths absolute. Throws Error if
+/// --procedural is combined with options of labels or bones.
 void fill_in_choices(ActionDataArgs& args);
 
-/// Takes the data of a run from its checkpoint's note, but for what the command line of `verb` gives. Throws
-/// Error, ending in `remedy`, if neither says which clips.
+/// Takes the data options that the command line of `verb` does not give from the checkpoint of `run`. Throws
+/// Error, ending in `remedy`, if neither names the clips.
 void take_data_of_run(ActionDataArgs& args, const CLI::App& verb, const fs::path& run, const char* remedy);
 
-/// Says what it reads.
+/// Loads the clips and prints their source.
 motion::ActionDataset load_data(const ActionDataArgs& args);
 void print_data(const motion::ActionDataset& data, const ActionDataArgs& args);
 

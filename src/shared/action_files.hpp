@@ -1,4 +1,4 @@
-// Clips of positions as files: BVH, CSV or NPY.
+// Writes position clips as BVH, CSV or NPY files.
 #pragma once
 #include "shared/command.hpp"
 #include "motiongan/data/action_source.hpp"
@@ -10,12 +10,13 @@ namespace motiongan::command {
 
 /// Adds --format.
 inline void add_format_option(CLI::App& verb, std::string& format) {
-  verb.add_option("--format", format, "of the files: bvh, or positions as csv or npy (with a bones.tsv)")
+  verb.add_option("--format", format, "file format: bvh, or positions as csv or npy (with a bones.tsv)")
       ->check(CLI::IsMember({"bvh", "csv", "npy"}))
       ->capture_default_str();
 }
 
-/// Writes the clip as its name ends, at `rate` (0: as it is). `motion` is the clip with rotations, for BVH.
+/// Writes the clip in the format of the file's extension, at `rate` (0: the clip's own). `motion` is the clip
+/// with rotations; only BVH needs it.
 inline void write_action_clip(const fs::path& file, const motion::PositionClip& clip,
                               const motion::Motion& motion, double rate) {
   const std::string kind = file.extension().string();
@@ -28,7 +29,7 @@ inline void write_action_clip(const fs::path& file, const motion::PositionClip& 
     motion::write_position_npy(file, written);
 }
 
-/// Positions do not say how joints hang together: writes that beside them.
+/// Writes bones.tsv, the parents of the joints, which position files do not contain.
 inline void write_bones_beside(const fs::path& folder, const motion::Skeleton& skeleton) {
   motion::write_bone_list(folder / motion::bone_list_name, skeleton);
 }

@@ -18,7 +18,7 @@ void add_clip_options(CLI::App& verb, CaptionedDataArgs& a, const char* folder) 
 }  // namespace
 
 void add_test_clip_options(CLI::App& verb, CaptionedDataArgs& a) {
-  add_clip_options(verb, a, "other clips than those that the run held out for testing");
+  add_clip_options(verb, a, "folder of BVH clips to use instead of those of the run");
   add_options(verb, fields_of(a), "Options", {.only = {"train_share", "split_seed"}});
 }
 
@@ -54,7 +54,7 @@ motion::Dataset load_data(const CaptionedDataArgs& args) {
     fmt::print("reading {}\n", shown(args.folder));
     return motion::Dataset::from_bvh(args.folder, args.data);
   }
-  // A clip holds a window and a half; its rate is a multiple of the model's, so nothing need be resampled.
+  // A clip holds one and a half windows; its rate is a multiple of the model's, so no frame is interpolated.
   motion::ProceduralOptions options;
   options.clips = args.procedural;
   options.seconds = std::max(10.0, 1.5 * static_cast<double>(args.data.frames) / args.data.rate);
@@ -71,32 +71,32 @@ void print_data(const motion::Dataset& data, const CaptionedDataArgs& args) {
     for (const motion::DatasetClip& clip : clips) n += data.starts(clip);
     return n;
   };
-  std::string clips = fmt::format("{} to train on, {} kept for testing", data.train.size(), data.test.size());
+  std::string clips = fmt::format("{} for training, {} held out for testing", data.train.size(), data.test.size());
   if (!data.skipped.empty())
     clips += fmt::format("; {} left out, shorter than {}", data.skipped.size(), duration(window));
   print_fact("clips", clips);
-  print_fact("windows", fmt::format("{} to train on, of {} frames at {} per second ({})", windows(data.train),
+  print_fact("windows", fmt::format("{} for training, of {} frames at {} per second ({})", windows(data.train),
                                     format.frames, brief(format.rate), duration(window)));
   const std::size_t used = data.train.size() + data.test.size();
   if (args.procedural > 0)
     print_fact("captions", "those of the built-in motion");
   else if (args.data.captions.empty())
-    print_fact("captions", "made from the names of the files (no captions.tsv in the folder, no --captions)");
+    print_fact("captions", "taken from file names (no captions.tsv in the folder, no --captions)");
   else
     print_fact("captions",
                fmt::format("from {}{}", shown(args.data.captions),
                            data.named == 0 ? std::string()
-                                           : fmt::format("; {} of {} are not in it and are called by "
-                                                         "the names of their files",
+                                           : fmt::format("; {} of {} are not in it and are captioned by "
+                                                         "their file names",
                                                          data.named, counted(used, "clip"))));
   print_fact("words", fmt::format("{} in the training captions", format.vocabulary.size() - 1));
   print_fact("skeleton",
-             fmt::format("{}, root {}; {} of a pose change{}", counted(format.skeleton().size(), "joint"),
-                         format.skeleton().joints[format.layout.root()].name, counted(format.dof(), "number"),
-                         format.layout.root_position() ? ", the root's position among them" : ""));
+             fmt::format("{}, root {}; {} per pose vary{}", counted(format.skeleton().size(), "joint"),
+                         format.skeleton().joints[format.layout.root()].name, counted(format.dof(), "value"),
+                         format.layout.root_position() ? ", including the root's position" : ""));
   if (data.dropped_frames > 0)
     print_fact("first frame",
-               fmt::format("{} at the start of clips left out{}", counted(data.dropped_frames, "frame"),
+               fmt::format("{} dropped at the start of clips{}", counted(data.dropped_frames, "frame"),
                            args.data.first_frame == motion::FirstFrame::automatic ? " (a T-pose before the motion)" : ""));
 }
 

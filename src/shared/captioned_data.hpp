@@ -15,30 +15,30 @@ struct CaptionedDataArgs {
                       .help = "folder of BVH clips (searched recursively), or one clip",
                       .option = "FOLDER"});
     list.add(procedural, {.key = "procedural",
-                          .help = "instead of FOLDER: the number of clips of built-in motion",
+                          .help = "instead of FOLDER: number of clips of built-in motion",
                           .type = "CLIPS"});
     data.list_fields(list);
   }
 };
 
-/// The options that go with a folder of clips, and not with another one.
+/// Options that belong to one folder of clips; another folder needs its own.
 inline const std::vector<std::string_view> options_of_captioned_clips{"--captions"};
 
 /// Adds FOLDER and the options of the data to a verb.
 void add_captioned_data_options(CLI::App& verb, CaptionedDataArgs& args);
 
-/// Adds FOLDER and what selects other test clips than those of a run.
+/// Adds FOLDER and the options that select test clips other than a run's.
 void add_test_clip_options(CLI::App& verb, CaptionedDataArgs& args);
 
 /// Handles --procedural without a number, after the command line has been read.
 void fill_in_procedural(const CLI::App& verb, std::size_t& procedural);
 
-/// Makes paths absolute, finds the captions next to the clips, and sets the form of the root's rotation where
-/// it is open.
+/// Makes paths absolute, finds the captions next to the clips, and sets the representation of the root's
+/// rotation unless an option gives it.
 void fill_in_data(CaptionedDataArgs& args, motion::RootRotation root_rotation);
 
-/// Takes the data of the run in whose folder `checkpoint` lies from its note, but for what the command line
-/// gives. Throws Error if neither says which clips; `file` is the model's.
+/// Takes the data options that the command line does not give from the run's `checkpoint`. Throws Error if
+/// neither names the clips; `file` is the model file, for the message.
 void take_captioned_data(CaptionedDataArgs& args, const CLI::App& verb, const fs::path& checkpoint,
                          const fs::path& file);
 

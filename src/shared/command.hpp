@@ -18,12 +18,12 @@ namespace motiongan::command {
 
 namespace fs = std::filesystem;
 
-/// What main() runs once the command line has been read; the exit status.
+/// What main() runs after parsing the command line. Returns the exit status.
 using Job = std::function<int()>;
 
-/// A verb of the command, such as "info" or "train dvgan". It stands once in its own file:
+/// A verb of the command, such as "info" or "train dvgan", defined once in its own file:
 ///     const Verb verb{"info", [](CLI::App& app, Job& job) { ... }};
-/// main() calls `add` with the command, or with the group that the name begins with.
+/// main() calls `add` with the app, or with the group that the name begins with.
 struct Verb {
   using Add = void (*)(CLI::App& parent, Job& job);
   Verb(const char* name, Add add) { all().emplace_back(name, add); }
@@ -35,7 +35,7 @@ struct Verb {
   }
 };
 
-/// How this command was called, for lines that a reader is to type: "motiongan", or the path to it.
+/// How this command was invoked, for suggested command lines: "motiongan", or the path to it.
 inline std::string& program() {
   static std::string name = "motiongan";
   return name;
@@ -59,14 +59,14 @@ inline std::string duration(double seconds) {
   return small == 0 ? first : fmt::format("{} {} {}", first, small, hours ? "min" : "s");
 }
 
-/// How wide a text is on a terminal, taking every code point for one column.
+/// Width of a text on a terminal, counting every code point as one column.
 inline std::size_t columns_of(std::string_view utf8) {
   std::size_t n = 0;
   for (const char c : utf8) n += (c & 0xC0) != 0x80;
   return n;
 }
 
-/// Prints rows of texts as a table with a line of headings; `align` has an 'l' or 'r' for each column.
+/// Prints a table with a line of headings; `align` has an 'l' or 'r' for each column.
 inline void print_table(const std::vector<std::string>& head,
                         const std::vector<std::vector<std::string>>& rows, std::string_view align,
                         std::string_view indent = "") {
@@ -88,12 +88,12 @@ inline void print_table(const std::vector<std::string>& head,
   for (const auto& row : rows) line(row);
 }
 
-/// One line of a list of facts: the name in a column of its own.
+/// Prints one line of a list of facts, with the name in its own column.
 inline void print_fact(std::string_view name, std::string_view text) {
   fmt::print("  {:<11} {}\n", name, text);
 }
 
-/// Refuses what CLI11 would wrap around: a whole number below 0.
+/// Accept numbers of at least 0, and above 0. CLI11 itself would wrap a negative integer around.
 CLI::Validator not_negative();
 CLI::Validator positive();
 
@@ -106,29 +106,29 @@ inline std::string describe(const Device& device) {
   return fmt::format("{}: {} ({})", kind_of(device), device.name, device.platform_name);
 }
 
-/// A path as a reader of the terminal finds it again: relative where it lies below the current folder.
+/// A path for printing: relative if it is below the current folder.
 inline std::string shown(const fs::path& path) {
   std::error_code problem;
   const fs::path near = fs::proximate(path, problem);
   return (problem || near.empty() || *near.begin() == "..") ? path.string() : near.string();
 }
 
-/// Makes the folder and those above it where they are not there yet.
+/// Creates the folder and its missing parents.
 inline void make_folder(const fs::path& folder) {
   std::error_code problem;
   fs::create_directories(folder, problem);
   if (problem || !fs::is_directory(folder))
-    throw Error("cannot make the folder ", folder.string(), ": ",
-                problem ? problem.message() : "a file of that name is in the way");
+    throw Error("cannot create the folder ", folder.string(), ": ",
+                problem ? problem.message() : "a file of that name exists");
 }
 
-/// The folder that a file to be written lies in, made where it is missing.
+/// Creates the folder of a file to be written.
 inline void make_folder_of(const fs::path& file) {
   if (file.has_parent_path()) make_folder(file.parent_path());
 }
 
-/// The file of captions that goes with a folder of clips: the one given, or captions.tsv in the folder where
-/// there is one, or none.
+/// The caption file for a folder of clips: `given`, or else captions.tsv in the folder if it exists, or else
+/// empty.
 inline fs::path captions_for(const fs::path& folder, const fs::path& given) {
   if (!given.empty()) return given;
   const fs::path beside = folder / "captions.tsv";

@@ -12,7 +12,7 @@ struct AddOption {
   std::string name = field.option();
 
   CLI::Option* operator()(bool* member) const {
-    // A flag that is on unless asked otherwise has a --no- as well.
+    // A flag that is on by default also gets a --no- form.
     return verb.add_flag(*member ? with_no() : name, *member,
                          field.info.help + (*member ? " [on]" : " [off]"));
   }
@@ -77,7 +77,7 @@ CLI::Validator in_range(const Range& range) {
             const double value = std::strtod(text.c_str(), &end);
             const bool number = !text.empty() && *end == '\0';
             return number && range.contains(value) ? std::string()
-                                                   : concat("expected a number ", range.text(), ", not ", text);
+                                                   : concat("expected ", range.text(), ", not ", text);
           },
           ""};
 }
@@ -120,7 +120,7 @@ void take_note(const FieldList& fields, const CLI::App& verb, const std::string&
     const bool is_data = name == "FOLDER" || name == "--procedural" || contains(of_data, name);
     if (name.empty() || given(verb, name) || (is_data && other_data)) continue;
     const auto found = kept.find(name);
-    if (found == kept.end()) continue;  // the option is younger than the run
+    if (found == kept.end()) continue;  // the run is older than the option
     io::detail::field_from_json(field, *found, from.string() + ": the options of the run");
   }
 }

@@ -1,4 +1,4 @@
-// What generate and complete are given: a model and texts.
+// Model files, texts and names of output files; shared by generate, complete and other verbs.
 #pragma once
 #include <set>
 
@@ -9,22 +9,22 @@
 
 namespace motiongan::command {
 
-/// The model file itself, or the one in the folder of a run.
+/// The model file `given`, or the one in the run folder `given`.
 inline fs::path model_file(const fs::path& given) {
   if (!fs::is_directory(given)) return given;
   const RunFiles files{given};
   require(fs::exists(files.generator()), given.string(), " holds no ", files.generator().filename().string(),
-          "; give a model file, or the --save folder of a training");
+          "; give a model file, or the --save folder of a training run");
   return files.generator();
 }
 
-/// Error unless the text of --text can be one.
+/// Throws Error if the text of --text has no words or is not UTF-8.
 inline void check_text(const std::string& text) {
   require(!motion::split_words(text).empty(), "--text \"", text, "\" has no words; describe a motion");
   require(motion::is_utf8(text), "the text \"", text, "\" is not UTF-8");
 }
 
-/// A file name made of a text: its words joined by dashes, at most about 60 bytes.
+/// A file name for a text: its words joined by dashes, at most 60 bytes.
 inline std::string slug(const std::string& text) {
   std::string out;
   for (const std::string& word : motion::split_words(text)) {
@@ -44,11 +44,11 @@ inline void warn_of_unknown_words(const motion::Vocabulary& vocabulary, const st
   std::string list;
   for (const std::string& word : words) list += (list.empty() ? "\"" : ", \"") + word + "\"";
   fmt::print(stderr, "motiongan: \"{}\": the model never saw {}{}\n", text, list,
-             words.size() == motion::split_words(text).size() ? "; it knows none of these words"
-                                                              : "; taken as unknown");
+             words.size() == motion::split_words(text).size() ? "; it knows no word of this text"
+                                                              : "; treated as unknown");
 }
 
-/// The files of samples `first` to `first` + `count` - 1 of a name.
+/// NAME_000.bvh and so on, for samples `first` to `first` + `count` - 1.
 inline std::vector<fs::path> sample_files(const fs::path& folder, const std::string& name, std::size_t first,
                                           std::size_t count) {
   std::vector<fs::path> files;
@@ -63,10 +63,10 @@ inline std::string named(const std::vector<fs::path>& files) {
   return files.size() == 1 ? first : fmt::format("{} to {}", first, files.back().filename().string());
 }
 
-/// Samples are numbered by 32 bits.
+/// Throws Error if a sample number exceeds 32 bits.
 inline void check_samples(std::size_t first, std::size_t count) {
   require(first <= 0xFFFFFFFFu && count <= 0xFFFFFFFFu - first, "--first-sample ", first, " and --count ",
-          count, " go past sample 4294967295");
+          count, " exceed the largest sample number, 4294967295");
 }
 
 }  // namespace motiongan::command

@@ -1,4 +1,4 @@
-// Motions as a page and as a picture: what generate, view and demo share.
+// Shows motions on an HTML page and in a picture; shared by generate, complete, search, view and demo.
 #pragma once
 #include <algorithm>
 #include <span>
@@ -11,16 +11,16 @@
 
 namespace motiongan::command {
 
-/// Frames of a motion that a page shows at most.
+/// The largest number of frames of a motion that a page shows.
 inline constexpr std::size_t most_shown = 3000;
 
-/// What a page shows of a motion at the model's rate: at most most_shown frames, at `rate` (0: as it is).
+/// The motion at `rate` (0: its own), cut to most_shown frames.
 inline motion::Motion for_page(const motion::Motion& motion, double rate) {
   const motion::Motion shown = rate > 0 ? motion::resample(motion, rate) : motion;
   return shown.frames > most_shown ? slice(shown, 0, most_shown) : shown;
 }
 
-/// Writes the page and says how to look at it; motions that belong together come `group` at a time.
+/// Writes the page and prints where. Each row shows `group` consecutive motions.
 inline void show_page(const fs::path& path, std::span<const view::ViewedMotion> motions,
                       const std::string& title, std::size_t group = 1) {
   make_folder_of(path);
@@ -29,7 +29,7 @@ inline void show_page(const fs::path& path, std::span<const view::ViewedMotion> 
              counted(motions.size(), "motion"));
 }
 
-/// Writes a strip of poses; of many motions only the first ones, for a picture has an end.
+/// Writes a picture with a row of poses for each of the first 24 motions.
 inline void show_strip(const fs::path& path, std::span<const view::ViewedMotion> motions) {
   constexpr std::size_t most = 24;
   make_folder_of(path);

@@ -1,4 +1,4 @@
-// Stopping where it is safe to.
+// Ctrl-C and SIGTERM as requests to stop at the next safe point.
 #include "shared/signals.hpp"
 
 #include <csignal>

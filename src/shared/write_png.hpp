@@ -1,4 +1,4 @@
-// Pictures as PNG files, through libpng.
+// Writes PNG files with libpng.
 #pragma once
 #include <png.h>
 
@@ -12,8 +12,8 @@
 
 namespace motiongan {
 
-/// Writes `image` to `path`; a file that is there already is replaced only by a complete one.
-/// Error where the picture is empty or the file cannot be written.
+/// Writes `image` to `path`; an existing file is replaced only by a complete one.
+/// Throws Error if the image is empty or the file cannot be written.
 inline void write_png(const std::filesystem::path& path, const view::Image& image) {
   require(image.width > 0 && image.height > 0 && image.rgb.size() == image.width * image.height * 3,
           "the picture for ", path.string(), " has ", image.width, " x ", image.height, " pixels and ",
@@ -31,13 +31,13 @@ inline void write_png(const std::filesystem::path& path, const view::Image& imag
   if (written == 0) {
     std::filesystem::remove(beside, problem);
     throw Error("cannot write the picture ", path.string(), ": ", png.message,
-                "; check that the folder exists, may be written to and has room");
+                "; check that the folder exists, is writable and has space");
   }
   std::filesystem::rename(beside, path, problem);
   if (problem) {
     const std::string reason = problem.message();
     std::filesystem::remove(beside, problem);
-    throw Error("cannot put the picture at ", path.string(), ": ", reason);
+    throw Error("cannot move the picture to ", path.string(), ": ", reason);
   }
 }
 

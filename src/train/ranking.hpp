@@ -1,11 +1,11 @@
-// A ranker as the command keeps it: what `train ranker` writes and `evaluate` reads.
+// Options and files of a ranker's run, shared by `train ranker`, `evaluate` and `ablate dvgan`.
 #pragma once
 #include "motiongan/train/ranker_trainer.hpp"
 #include "shared/captioned_data.hpp"
 
 namespace motiongan::command {
 
-/// What a run is. Kept in its checkpoint, so that --resume needs none of it.
+/// The options that define a run. Its checkpoint stores them, so --resume needs none of them.
 struct RankerArgs : CaptionedDataArgs {
   RankerOptions model;
   RankerTrainOptions training;
@@ -17,7 +17,7 @@ struct RankerArgs : CaptionedDataArgs {
   }
 };
 
-/// Sets what follows from other options. Throws Error for windows that the network cannot have.
+/// Sets defaults that follow from other options. Throws Error if --frames does not suit the network.
 inline void fill_in_choices(RankerArgs& a) {
   fill_in_data(a, motion::RootRotation::heading);
   a.model.seed = a.training.seed;
@@ -27,12 +27,12 @@ inline void fill_in_choices(RankerArgs& a) {
     require(a.data.frames >= 2, "--frames is ", a.data.frames, ", expected at least 2");
 }
 
-/// The ranker's file: the one given, or the one in the folder of a run.
+/// The ranker file `given`, or the one in the run folder `given`.
 inline fs::path ranker_file(const fs::path& given) {
   if (!fs::is_directory(given)) return given;
   const fs::path file = RunFiles{given}.network("ranker");
   require(fs::exists(file), given.string(), " holds no ", file.filename().string(),
-          "; give a ranker's file, or the --save folder of motiongan train ranker");
+          "; give a ranker file, or the --save folder of `motiongan train ranker`");
   return file;
 }
 

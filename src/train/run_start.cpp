@@ -8,7 +8,7 @@ namespace motiongan::command {
 void add_run_options(CLI::App& verb, RunArgs& args, const std::string& save_default) {
   verb.add_option("--save", args.save, "folder of the run [" + save_default + "]")->type_name("DIR");
   verb.add_flag("--resume", args.resume,
-                "continue the run in --save; its options are those of its first start");
+                "continue the run in --save with its original options");
   add_options(verb, fields_of(args.run), "Run");
 }
 
@@ -54,13 +54,13 @@ RunStart begin_run(const RunArgs& args, const fs::path& save, bool has_data, con
     take(note, files.checkpoint());
   else
     require(has_data, files.checkpoint().string(),
-            " does not say what it was trained on; give the folder and the options of its first start");
+            " does not say what it was trained on; give the original folder and options");
   return start;
 }
 
 bool is_done(const RunStart& start, const RunArgs& args, std::size_t iterations) {
   if (!args.resume || start.done < iterations) return false;
-  fmt::print("{} has all its {} already; --iterations N asks for more\n", start.folder.string(),
+  fmt::print("{} has all its {} already; train longer with --iterations N\n", start.folder.string(),
              counted(start.done, "iteration"));
   return true;
 }

@@ -1,4 +1,4 @@
-// motiongan train attention: from clips with classes to a model that continues a second of motion.
+// motiongan train attention: trains a model that continues a second of motion on labelled clips.
 #include "motiongan/train/attention_trainer.hpp"
 #include "motiongan/train/baseline_trainer.hpp"
 #include "shared/action_data.hpp"
@@ -7,7 +7,7 @@
 namespace motiongan::command {
 namespace {
 
-/// What a run is. Kept in its checkpoint, so that --resume needs none of it.
+/// The options that define a run. Its checkpoint stores them, so --resume needs none of them.
 struct AttentionArgs {
   ActionDataArgs data;
   ActionGanOptions model;
@@ -21,7 +21,7 @@ struct AttentionArgs {
   }
 };
 
-/// Throws Error for an option of the training against a critic, which the baseline does not have.
+/// Throws Error for options of adversarial training, which the baseline does not have.
 void check_baseline(AttentionArgs& args, const CLI::App& verb) {
   FieldList all;
   args.model.list_fields(all);
@@ -33,7 +33,7 @@ void check_baseline(AttentionArgs& args, const CLI::App& verb) {
     if (key == "generator" || key == "hidden" || shared.find(key) != nullptr) continue;
     const CLI::Option* const option = verb.get_option_no_throw(field.option());
     require(option == nullptr || option->count() == 0, field.option(),
-            " is not for --model lstm: the baseline learns to reproduce motion, without a critic");
+            " does not apply to --model lstm: the baseline is trained without a critic");
   }
 }
 
@@ -58,9 +58,9 @@ RunResult train_either(ActionGan& model, const motion::ActionDataset& data, Atte
   fmt::print("{} iterations of {} critic steps, a classifier step and {}, batch {}{}\n", t.iterations,
              t.critic_steps, counted(t.generator_steps, "generator step"), t.batch, resuming);
   fmt::print(
-      "Ctrl-C saves and stops. W: Wasserstein estimate; gp: gradient penalty; of the generator: adv, "
-      "skel(eton),\n"
-      "blend, class(ification); clf: the classifier's own loss; acc: its accuracy; gamma: of attention\n");
+      "Ctrl-C saves and stops. W: Wasserstein estimate; gp: gradient penalty; adv, skel(eton), blend,\n"
+      "class(ification): generator losses; clf, acc: loss and accuracy of the classifier; gamma: attention "
+      "weight\n");
   AttentionTrainer trainer(model, data, t);
   return run_shown(trainer, write_split, args.run, start, note,
                    {{"wasserstein", "W"},
@@ -113,17 +113,15 @@ int train_attention(AttentionArgs args, const CLI::App& verb) {
 const Verb train_attention_verb{"train attention", [](CLI::App& train, Job& job) {
   CLI::App* verb = train.add_subcommand(
       "attention",
-      "Train the attention WGAN-GP (a second of motion and a class to the next second) on clips with "
-      "classes.\n"
-      "Writes generator, critic, classifier, checkpoint, log.csv and split.tsv to the --save folder. Ctrl-C "
-      "saves and\n"
-      "stops; --resume continues as if the run had never stopped, and needs no option but --save.");
+      "Train the attention WGAN-GP on labelled clips: it continues a second of motion in a given class.\n"
+      "Writes generator, critic, classifier, checkpoint, log.csv and split.tsv to the --save folder. Ctrl-C\n"
+      "saves and stops; --resume continues as if the run had never stopped, and needs only --save.");
   const auto args = std::make_shared<AttentionArgs>();
   AttentionArgs& a = *args;
   add_action_data_options(*verb, a.data, true);
   add_options(*verb, fields_of(a.model), "Model");
   add_options(*verb, fields_of(a.training), "Training");
-  add_run_options(*verb, a.run, "save/NAME, NAME being the folder's");
+  add_run_options(*verb, a.run, "save/NAME, where NAME is that of FOLDER");
   verb->callback([&job, args, verb] {
     fill_in_procedural(*verb, args->data.procedural);
     job = [args, verb] { return train_attention(*args, *verb); };

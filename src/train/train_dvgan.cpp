@@ -1,4 +1,4 @@
-// motiongan train dvgan: from clips and captions to a model.
+// motiongan train dvgan: trains a text-to-motion model on captioned clips.
 #include "train/training.hpp"
 
 namespace motiongan::command {
@@ -41,16 +41,16 @@ int train_dvgan(TrainDvganArgs args, const CLI::App& verb) {
 const Verb train_dvgan_verb{"train dvgan", [](CLI::App& train, Job& job) {
   CLI::App* verb = train.add_subcommand(
       "dvgan",
-      "Train a DVGAN (text to motion) on a folder of BVH clips.\n"
+      "Train a DVGAN (text to motion) on a folder of BVH clips with captions.\n"
       "Writes generator, critic, checkpoint, log.csv and split.tsv to the --save folder. Ctrl-C saves and "
       "stops;\n"
-      "--resume continues as if the run had never stopped, and needs no option but --save.");
+      "--resume continues as if the run had never stopped, and needs only --save.");
   const auto args = std::make_shared<TrainDvganArgs>();
   TrainDvganArgs& a = *args;
   add_captioned_data_options(*verb, a);
   add_options(*verb, fields_of(a.model), "Model");
   add_options(*verb, fields_of(a.training), "Training");
-  add_run_options(*verb, a.run, "save/NAME, NAME being the folder's");
+  add_run_options(*verb, a.run, "save/NAME, where NAME is that of FOLDER");
   verb->callback([&job, args, verb] {
     fill_in_procedural(*verb, args->procedural);
     job = [args, verb] { return train_dvgan(*args, *verb); };

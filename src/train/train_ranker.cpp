@@ -1,4 +1,4 @@
-// motiongan train ranker: which description fits a motion.
+// motiongan train ranker: trains a ranker, which scores how well a description fits a motion.
 #include "train/ranking.hpp"
 #include "train/run_start.hpp"
 
@@ -25,7 +25,7 @@ int train_ranker(TrainRankerArgs args, const CLI::App& verb) {
   const motion::Dataset data = load_data(args);
   print_data(data, args);
   const motion::Descriptions descriptions = motion::distinct_descriptions(data.train);
-  print_fact("choices", fmt::format("{} of the training clips, {} in a step (or as many as its clips have)",
+  print_fact("choices", fmt::format("{} of the training clips, {} per step (more if its clips have more)",
                                     counted(descriptions.size(), "distinct description"),
                                     std::min(args.training.descriptions, descriptions.size())));
   Ranker ranker(context, data.format, args.model);
@@ -42,22 +42,22 @@ int train_ranker(TrainRankerArgs args, const CLI::App& verb) {
   RankerTrainer trainer(ranker, data, args.training);
   run_shown(trainer, [&](const fs::path& path) { data.write_split(path); }, args.run, start,
             note_of(fields_of(kept)), {{"loss", "loss"}, {"recall1", "R@1"}}, "train ranker");
-  fmt::print("measure: {} evaluate ranker {}\n", program(), start.folder.string());
+  fmt::print("evaluate: {} evaluate ranker {}\n", program(), start.folder.string());
   return exit_status();
 }
 
 const Verb train_ranker_verb{"train ranker", [](CLI::App& train, Job& job) {
   CLI::App* verb = train.add_subcommand(
       "ranker",
-      "Train a ranker: how well a description fits a motion. What a DVGAN is measured by.\n"
+      "Train a ranker, which scores how well a description fits a motion and is used to evaluate DVGANs.\n"
       "Writes ranker, checkpoint, log.csv and split.tsv to the --save folder. Ctrl-C saves and stops; "
-      "--resume\ncontinues as if the run had never stopped, and needs no option but --save.");
+      "--resume\ncontinues as if the run had never stopped, and needs only --save.");
   const auto args = std::make_shared<TrainRankerArgs>();
   TrainRankerArgs& a = *args;
   add_captioned_data_options(*verb, a);
   add_options(*verb, fields_of(a.model), "Model");
   add_options(*verb, fields_of(a.training), "Training");
-  add_run_options(*verb, a.run, "save/NAME-ranker, NAME being the folder's");
+  add_run_options(*verb, a.run, "save/NAME-ranker, where NAME is that of FOLDER");
   verb->callback([&job, args, verb] {
     fill_in_procedural(*verb, args->procedural);
     job = [args, verb] { return train_ranker(*args, *verb); };

@@ -4,7 +4,7 @@ namespace motiongan::command {
 
 void fill_in_choices(DvganArgs& a) {
   const bool recurrent = a.model.generator == GeneratorKind::rnn;
-  // Place and yaw counted from a window's start grow without bound in motion of any length.
+  // Position and yaw relative to a window's start would grow without bound in long motion.
   fill_in_data(a, recurrent ? motion::RootRotation::velocity : motion::RootRotation::heading);
   a.model.final_cut = a.model.cuts();
   a.model.seed = a.training.seed;

@@ -1,4 +1,4 @@
-// A DVGAN training as the command keeps it: what train, ablate and demo share.
+// Options of a DVGAN run, shared by train, ablate and demo.
 #pragma once
 #include "motiongan/train/dvgan_trainer.hpp"
 #include "shared/captioned_data.hpp"
@@ -6,7 +6,7 @@
 
 namespace motiongan::command {
 
-/// What a run is. Kept in its checkpoint, so that --resume needs none of it.
+/// The options that define a run. Its checkpoint stores them, so --resume needs none of them.
 struct DvganArgs : CaptionedDataArgs {
   DvganOptions model;
   DvganTrainOptions training;
@@ -18,7 +18,8 @@ struct DvganArgs : CaptionedDataArgs {
   }
 };
 
-/// Sets what follows from other options. Throws Error for windows that the networks cannot have.
+/// Sets defaults that follow from other options. Throws Error if --frames or --completions does not suit the
+/// networks.
 void fill_in_choices(DvganArgs& args);
 
 void print_model(Dvgan& model);

@@ -11,7 +11,7 @@ namespace {
 
 fs::path mark_of(const fs::path& folder) { return folder / "finished.json"; }
 
-/// Whether one limit allows no more than another; 0 is none.
+/// Whether the limit `wanted` is at most `had`; 0: no limit.
 bool within(double wanted, double had) { return had == 0 || (wanted > 0 && wanted <= had); }
 
 }  // namespace
@@ -21,8 +21,9 @@ void add_budget_options(CLI::App& verb, TrainingBudget& budget, const std::strin
   const auto option = [&](const char* name, auto& member, const std::string& text) {
     return verb.add_option(name, member, text)->capture_default_str()->group(group);
   };
-  option("--minutes", budget.minutes, each + "; 0: no limit")->check(not_negative());
-  option("--iterations", budget.iterations, each + "; 0: no limit. Alone, it takes the place of --minutes")
+  option("--minutes", budget.minutes, "training time " + each + "; 0: no limit")->check(not_negative());
+  option("--iterations", budget.iterations,
+         "training iterations " + each + "; 0: no limit. Given alone, they replace --minutes")
       ->check(not_negative());
   option("--save-every", budget.save_every_minutes, "minutes between two checkpoints; 0: only at the end")
       ->check(not_negative());
@@ -32,7 +33,7 @@ void add_budget_options(CLI::App& verb, TrainingBudget& budget, const std::strin
 void settle_budget(const CLI::App& verb, TrainingBudget& budget) {
   if (verb.count("--iterations") > 0 && verb.count("--minutes") == 0) budget.minutes = 0;
   require(budget.minutes > 0 || budget.iterations > 0,
-          "nothing says how long to train; give --minutes or --iterations");
+          "there is no limit on the training; give --minutes or --iterations");
 }
 
 std::string described(const TrainingBudget& budget) {
@@ -43,14 +44,14 @@ std::string described(const TrainingBudget& budget) {
 
 bool has_had(const fs::path& folder, const TrainingBudget& budget) {
   if (!fs::exists(mark_of(folder))) return false;
-  const auto mark = nlohmann::json::parse(motion::read_text(mark_of(folder), "mark"), nullptr, false);
+  const auto mark = nlohmann::json::parse(motion::read_text(mark_of(folder), "record of a finished run"), nullptr, false);
   try {
     return within(budget.minutes, mark.at("minutes").get<double>()) &&
            within(static_cast<double>(budget.iterations),
                   static_cast<double>(mark.at("iterations").get<std::size_t>()));
   } catch (const nlohmann::json::exception& error) {
     throw Error(mark_of(folder).string(), " cannot be read: ", error.what(),
-                "; remove it to train the model on");
+                "; remove it to continue the training");
   }
 }
 
@@ -90,7 +91,7 @@ bool train_within(Trainer& trainer, const std::function<void(const fs::path&)>& 
   }
   fmt::print("{}: training for {}{}\n", name, described(budget),
              run.resume
-                 ? fmt::format("; {} after {} are done", counted(done, "iteration"), duration(60 * minutes))
+                 ? fmt::format("; {} ({}) already done", counted(done, "iteration"), duration(60 * minutes))
                  : "");
   const bool time_is_left = budget.minutes == 0 || minutes < budget.minutes;
   if (time_is_left && done < trainer.iterations()) {

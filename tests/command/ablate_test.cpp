@@ -3,6 +3,9 @@
 
 #include <algorithm>
 
+#include <limits>
+#include <motiongan/io/safetensors.hpp>
+
 #include "command.hpp"
 #include "motiongan/train/csv_log.hpp"
 
@@ -46,8 +49,8 @@ TEST_CASE("all seven variants are trained, measured and drawn; a second call tra
   const Said again =
       call("ablate attention --save cmp --iterations 2 --future 20 --windows 6 --unit-metres 0.01");
   CHECK_MESSAGE(again.status == 0, again.text);
-  CHECK(again.has("full: is trained already"));
-  CHECK(again.has("lstm: is trained already"));
+  CHECK(again.has("full: already trained"));
+  CHECK(again.has("lstm: already trained"));
   CHECK_FALSE(again.has("training for"));
   CHECK(checkpoint("cmp/full") == before);
   CHECK(bytes_of("cmp/table.csv") == table);
@@ -61,7 +64,7 @@ TEST_CASE("all seven variants are trained, measured and drawn; a second call tra
     fs::remove_all("cmp/no_blend");
     const Said some = call(small + " --save cmp --evaluate-only");
     CHECK(some.status == 0);
-    CHECK(some.has("not there, left out: no_blend"));
+    CHECK(some.has("not trained, left out: no_blend"));
     CHECK(lines_of(bytes_of("cmp/table.csv")) == 9);
     const Said asked = call(small + " --save cmp --evaluate-only --variants no_blend");
     CHECK(asked.status == 1);
@@ -79,12 +82,37 @@ TEST_CASE("a variant that had a part of its budget goes on to the same bits") {
   fs::remove("parts/full/finished.json");
   const Said rest = call(two + " --save parts --iterations 3");
   CHECK_MESSAGE(rest.status == 0, rest.text);
-  CHECK(rest.has("full: training for 3 iterations; 1 iteration after"));
-  CHECK(rest.has("lstm: training for 3 iterations; 1 iteration after"));
+  CHECK(rest.has("full: training for 3 iterations; 1 iteration ("));
+  CHECK(rest.has("lstm: training for 3 iterations; 1 iteration ("));
   CHECK(checkpoint("parts/full") == checkpoint("whole/full"));
   CHECK(checkpoint("parts/lstm") == checkpoint("whole/lstm"));
   CHECK(motiongan::read_csv_log("parts/full/log.csv").column("iteration") == std::vector<double>{1, 2, 3});
   CHECK(bytes_of("parts/table.csv") == bytes_of("whole/table.csv"));
+}
+
+TEST_CASE("a damaged checkpoint is an error, a run that diverges is reported and left") {
+  const TestFolder folder;
+  const std::string two = small + " --variants full,lstm --save cmp";
+  REQUIRE(call(two + " --iterations 1").status == 0);
+  // A damaged file is not a run that diverged: it must not count as finished.
+  const fs::path checkpoint_file = "cmp/full/checkpoint.safetensors";
+  const auto whole = motiongan::io::SafeTensors::read(checkpoint_file);
+  auto damaged = whole;
+  auto& bias = damaged.tensors.at("generator.decode.bias");
+  std::vector<float> values = bias.as<float>();
+  values[0] = std::numeric_limits<float>::quiet_NaN();
+  bias = motiongan::io::SafeTensor::of(bias.shape, values);
+  damaged.write(checkpoint_file);
+  fs::remove("cmp/full/finished.json");
+  const Said refused = call(two + " --iterations 3");
+  CHECK(refused.status == 1);
+  CHECK_MESSAGE(refused.has("generator.decode.bias"), refused.text);
+  CHECK_FALSE(fs::exists("cmp/full/finished.json"));
+  // One that really diverges costs the others nothing.
+  whole.write(checkpoint_file);
+  const Said diverged = call(small + " --variants full,lstm --save wild --iterations 40 --learning-rate 1e30");
+  CHECK_MESSAGE(diverged.has("full: training diverged at iteration"), diverged.text);
+  CHECK_MESSAGE(diverged.has("lstm: training for"), diverged.text);
 }
 
 TEST_CASE("minutes are a budget too: a variant ends with them and is not trained again") {
@@ -93,10 +121,10 @@ TEST_CASE("minutes are a budget too: a variant ends with them and is not trained
   CHECK_MESSAGE(said.status == 0, said.text);
   CHECK(said.has("lstm: training for 1.2 s"));
   const std::string before = checkpoint("cmp/lstm");
-  CHECK(call(small + " --variants lstm --minutes 0.02 --save cmp").has("lstm: is trained already"));
+  CHECK(call(small + " --variants lstm --minutes 0.02 --save cmp").has("lstm: already trained"));
   CHECK(checkpoint("cmp/lstm") == before);
   const Said more = call(small + " --variants lstm --minutes 0.03 --save cmp");
-  CHECK_MESSAGE(more.has("are done"), more.text);
+  CHECK_MESSAGE(more.has("already done"), more.text);
   CHECK(checkpoint("cmp/lstm") != before);
 }
 
@@ -113,7 +141,7 @@ TEST_CASE("a comparison that cannot be is refused before it begins") {
   std::string long_future = small;
   long_future.replace(long_future.find("--future 20"), 11, "--future 500");
   refused(long_future + " --save cmp", "test clips lasts 508 frames");
-  refused(small + " --save cmp --minutes 0", "nothing says how long to train");
+  refused(small + " --save cmp --minutes 0", "there is no limit on the training");
   CHECK_FALSE(fs::exists("cmp/full"));
   CHECK(call(small).status > 1);  // no --save: usage
 }

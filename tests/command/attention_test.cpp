@@ -52,19 +52,19 @@ TEST_CASE("training on classes: every loss is told, and a resumed run ends bit-e
   CHECK(motiongan::read_csv_log("parts/log.csv").column("gamma").size() == 4);
   CHECK(call("train attention --resume --save parts").has("has all its 4 iterations already"));
   refused("train attention --resume --save parts --iterations 5 --rollouts 3",
-          "started with rollouts = 2, now 3");
+          "started with rollouts = 2, now it is 3");
   refused("train attention --procedural 51 --save parts" + small, "already holds a run");
   refused("train attention --procedural 51 --save lstm --model lstm --rollouts 3 --classes walk",
-          "--rollouts is not for");
+          "--rollouts does not apply to");
   refused("train attention --procedural 51 --folders", "--procedural has labels of its own");
   refused("train attention --save none", "there is nothing to train on");
-  refused("train attention --procedural 17 --classes wlak --save no", "the class 'wlak' was asked for");
+  refused("train attention --procedural 17 --classes wlak --save no", "no clip has the class 'wlak'");
 
   SUBCASE("info tells what model and run hold") {
     const Said model = call("info whole/generator.safetensors");
     CHECK_MESSAGE(model.status == 0, model.text);
     CHECK(model.has("attention_generator"));
-    CHECK(model.has("8 frames from 8 before, at 10 per second (0.8 s)"));
+    CHECK(model.has("8 frames from the 8 before them, at 10 per second (0.8 s)"));
     CHECK(model.has("jump, run, walk"));
     const Said run = call("info whole");
     CHECK_MESSAGE(run.status == 0, run.text);
@@ -72,13 +72,13 @@ TEST_CASE("training on classes: every loss is told, and a resumed run ends bit-e
     CHECK(run.has("batch 4"));
     CHECK(run.has("blend "));
   }
-  SUBCASE("priors are drawn from the clips kept for testing; the same sample is the same file") {
+  SUBCASE("priors are drawn from the held-out clips; the same sample is the same file") {
     const Said said = call(
         "generate whole --class walk:1s,run:7 --count 3 --out a --html a.html --png a.png "
         "--attention-map maps/m.png");
     CHECK_MESSAGE(said.status == 0, said.text);
-    CHECK(said.has("wrote 3 files: 8 frames that were given, then 17 (1.7 s) that the model made"));
-    CHECK(said.has("what frames of the first second look at"));
+    CHECK(said.has("wrote 3 files: 8 given frames, then 17 generated frames (1.7 s)"));
+    CHECK(said.has("which frames of the first second attend to which"));
     CHECK(read_bvh("a/walk-run_002.bvh").frames == 25);
     CHECK(bytes_of("a.png").substr(1, 3) == "PNG");
     CHECK(bytes_of("maps/m.png").substr(1, 3) == "PNG");
@@ -119,13 +119,13 @@ TEST_CASE("training on classes: every loss is told, and a resumed run ends bit-e
   }
   SUBCASE("what generate refuses") {
     refused("generate whole", "no class is given");
-    refused("generate whole --class wlak", "is 'walk' meant?");
+    refused("generate whole --class wlak", "did you mean 'walk'?");
     refused("generate whole --class walk:3s,run:x", "found the length 'x'");
     refused("generate whole --text walk", "it takes no --text; use --class");
     refused("generate whole --class walk --at 1", "--at needs --from");
     fs::create_directory("bare");
     fs::copy_file("whole/generator.safetensors", "bare/generator.safetensors");
-    refused("generate bare --class walk", "give the second to go on from with --from");
+    refused("generate bare --class walk", "give the second to continue with --from");
     fs::copy_file("whole/split.tsv", "bare/split.tsv");
     refused("generate bare --class walk", "or the clips to draw one from with --data");
   }
@@ -179,6 +179,6 @@ TEST_CASE("the LSTM baseline, labels from a file, and noise") {
   REQUIRE(call("train dvgan clips --save texts --iterations 1" + tiny).status == 0);
   refused("generate texts --class walk", "it has no classes, and takes no --class");
   refused("augment texts --out x", "holds a model called");
-  refused("train attention clips", "nothing says which class a clip is of");
+  refused("train attention clips", "there are no labels");
   refused("train attention clips --labels absent.tsv", "absent.tsv");
 }

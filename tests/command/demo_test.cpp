@@ -29,14 +29,14 @@ TEST_CASE("the demo writes what it promises, again and again, and spares other p
   CHECK(bytes_of("mine/precious.txt") == "keep");
 }
 
-TEST_CASE("devices marks the one that is taken; a wish for another is heard") {
+TEST_CASE("devices marks the selected device; --device and MOTIONGAN_DEVICE choose another") {
   const Said said = call("devices");
   CHECK(said.status == 0);
   CHECK(said.has("\n*  "));
-  CHECK(said.has("is the one that is taken"));
+  CHECK(said.has("is the selected device"));
   const Said wrong = call("--device abacus devices");
   CHECK(wrong.status == 1);
-  CHECK(wrong.has("none of these is \"abacus\""));
+  CHECK(wrong.has("none of these devices matches \"abacus\""));
   CHECK(call("devices --device abacus").status == 1);
   CHECK(shell(std::string("MOTIONGAN_DEVICE=abacus '") + MOTIONGAN_COMMAND + "' devices").status == 1);
 }

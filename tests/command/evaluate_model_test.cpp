@@ -22,7 +22,7 @@ TEST_CASE("evaluate motion: files beside files") {
     const Said said =
         call("evaluate motion --generated made --real real --unit-metres 0.01 --json out/m.json");
     CHECK_MESSAGE(said.status == 0, said.text);
-    CHECK(said.has("foot skate, % of steps"));
+    CHECK(said.has("foot skating, % of steps"));
     CHECK(said.has("jerk, m/s^3"));
     const auto m = json_of("out/m.json");
     CHECK(m.at("npss").at("pairs").get<int>() >= 1);
@@ -51,12 +51,12 @@ TEST_CASE("evaluate motion: files beside files") {
     refused("--generated made --real real --feet Left,Right", "there is no joint 'Left' to use as a foot");
     refused("--generated made --real nowhere", "nowhere");
     refused("--generated made --real real --rate 0.2", "holds no clip of four frames at 0.2 per second");
-    refused("--generated made --real real --unit-metres 0", "expected a number above 0");
+    refused("--generated made --real real --unit-metres 0", "above 0, not 0");
     refused("--generated made", "--real is required");
   }
 }
 
-TEST_CASE("evaluate model: a generator beside the clips that its run kept for testing") {
+TEST_CASE("evaluate model: a generator compared with the clips that its run held out for testing") {
   const TestFolder folder;
   REQUIRE(call("synth clips --clips 12 --seconds 5").status == 0);
   REQUIRE(call("train dvgan clips --save run --iterations 2" + tiny).status == 0);
@@ -66,11 +66,11 @@ TEST_CASE("evaluate model: a generator beside the clips that its run kept for te
     const std::string line = "evaluate model run --ranker ranker --samples 3 --unit-metres 0.01 ";
     const Said said = call(line + "--json a.json");
     CHECK_MESSAGE(said.status == 0, said.text);
-    CHECK(said.has("4 kept for testing"));  // the run's own split
-    CHECK(said.has("3 made and 3 real motions of each"));
+    CHECK(said.has("4 held out for testing"));  // the run's own split
+    CHECK(said.has("3 generated and 3 real motions of each"));
     for (const char* row :
          {"random", "this model", "real motion", "paper, CMU: cnn, cnn critic dense + shift", "FID *",
-          "diversity *", "multimodality *", "foot skate", "not comparable"})
+          "diversity *", "multimodality *", "foot skating", "not comparable"})
       CHECK_MESSAGE(said.has(row), row);
     CHECK_FALSE(said.has("paper, CMU: rnn"));
     CHECK_FALSE(said.has("test clips:"));  // none of them was trained on
@@ -105,14 +105,14 @@ TEST_CASE("evaluate model: a generator beside the clips that its run kept for te
     refused("run", "--ranker is required");
     refused("run --ranker run", "holds no ranker.safetensors");
     refused("ranker --ranker ranker", "holds no generator.safetensors");
-    refused("run --ranker run/generator.safetensors", "expected cnn_ranker or rnn_ranker");
+    refused("run --ranker run/generator.safetensors", "expected one of cnn_ranker, rnn_ranker; motiongan train ranker makes one");
     refused("run --ranker ranker --samples 1", "--samples");
     fs::create_directory("bare");
     fs::copy_file("run/generator.safetensors", "bare/model.safetensors");
     refused("bare/model.safetensors --ranker ranker", "does not say what it was trained on");
     const Said said = call("evaluate model bare/model.safetensors clips --ranker ranker --samples 2");
     CHECK_MESSAGE(said.status == 0, said.text);
-    CHECK(said.has("no split.tsv beside the model"));
+    CHECK(said.has("no split.tsv next to the model"));
   }
 }
 

@@ -80,8 +80,8 @@ TEST_CASE("search, with a model of two iterations") {
     write_bvh("none/other.bvh", other);
     refused("--model run --text walk --collection none", "is called 'Trunk'");
     CHECK(call("search --model run --text walk").status > 1);  // usage: no collection
-    CHECK(call(search + "--hypotheses 0").has("expected a number above 0, not 0"));
-    CHECK(call(search + "--hop 0").has("expected a number above 0, not 0"));
+    CHECK(call(search + "--hypotheses 0").has("above 0, not 0"));
+    CHECK(call(search + "--hop 0").has("above 0, not 0"));
     const Said unknown = call("search --model run --text 'swim walk' --collection clips --top 1");
     CHECK(unknown.has("the model never saw \"swim\""));
   }

@@ -16,7 +16,7 @@ TEST_CASE("a run that is stopped and resumed ends bit-equal to one that was not"
   REQUIRE(call("synth clips --clips 6 --seconds 5").status == 0);
   const Said whole = call("train dvgan clips --save whole --iterations 4" + tiny);
   CHECK(whole.status == 0);
-  CHECK(whole.has("4 to train on, 2 kept for testing"));
+  CHECK(whole.has("4 for training, 2 held out for testing"));
   CHECK(whole.has("from clips/captions.tsv"));
   CHECK(whole.has("finished after 4 of 4 iterations; saved in whole"));
   for (const char* file :
@@ -42,7 +42,7 @@ TEST_CASE("a run that is stopped and resumed ends bit-equal to one that was not"
   SUBCASE("other options are refused when resuming") {
     const Said batch = call("train dvgan --resume --save parts --iterations 5 --batch 8");
     CHECK(batch.status == 1);
-    CHECK(batch.has("the run was started with batch = 4, now 8 is asked"));
+    CHECK(batch.has("the run was started with batch = 4, now it is 8"));
     const Said rate = call("train dvgan --resume --save parts --iterations 5 --rate 5");
     CHECK(rate.status == 1);
     CHECK(rate.has("started with other data"));
@@ -115,7 +115,7 @@ TEST_CASE("a training that cannot be is refused before it begins") {
   refused("clips --frames 64", "none of 3 clips holds 64 frames at 4 per second");
   refused("--resume", "--resume needs --save");
   refused("--resume --save empty", "there is no run to resume in empty");
-  refused("clips --save clips/walk_000.bvh", "cannot make the folder");
+  refused("clips --save clips/walk_000.bvh", "cannot create the folder");
   write_file("bad.tsv", "walk_000\twalk\nrun_001 run\n");
   refused("clips --captions bad.tsv --frames 16", "bad.tsv:2: found no tab");
   write_file("mute.tsv", "walk_000\t...\n");

@@ -99,7 +99,7 @@ TEST_CASE("MOTIONGAN_MEMORY_MB") {
     const Setting setting("MOTIONGAN_MEMORY_MB", "2");
     const Context context;
     CHECK_NOTHROW(Tensor(context, {400'000}));
-    CHECK(says(message_of([&] { Tensor(context, {600'000}); }), "a limit of 2 MB"));
+    CHECK(says(message_of([&] { Tensor(context, {600'000}); }), "limit 2 MB"));
     const Context more({.memory_limit = 4'000'000});  // the option takes precedence
     CHECK_NOTHROW(Tensor(more, {600'000}));
   }

@@ -1,4 +1,4 @@
-// Data sets of classes, from motions, positions and files.
+// Action data sets from motions, positions and files.
 #include "motiongan/data/action_dataset.hpp"
 
 #include <doctest/doctest.h>
@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Procedural clips of about 3 seconds called {subject}_{number}, labelled "walk" or "wave" by turns.
+/// Procedural clips of about 3 seconds named {subject}_{number}, labelled "walk" and "wave" alternately.
 std::vector<LabelledMotion> labelled(std::size_t count) {
   std::vector<LabelledMotion> out;
   for (std::size_t i = 0; i < count; ++i) {
@@ -31,7 +31,7 @@ std::vector<LabelledMotion> labelled(std::size_t count) {
   return out;
 }
 
-/// A folder that goes when the test ends.
+/// A temporary folder, removed when the test ends.
 struct TemporaryFolder {
   fs::path path;
   explicit TemporaryFolder(const char* name) : path(fs::temp_directory_path() / name) {
@@ -59,7 +59,7 @@ std::vector<std::string> ids(const std::vector<ActionClip>& clips) {
 
 }  // namespace
 
-TEST_CASE("from motions: classes, windows, statistics and the way back") {
+TEST_CASE("from motions: classes, windows, statistics, and conversion back to positions") {
   const std::vector<LabelledMotion> motions = labelled(12);
   ActionDatasetOptions options;
   options.frames = 15;
@@ -103,7 +103,7 @@ TEST_CASE("from motions: classes, windows, statistics and the way back") {
   }
 }
 
-TEST_CASE("short clips are skipped, and if none is left that is an error") {
+TEST_CASE("short clips are skipped; it is an error if none is left") {
   std::vector<LabelledMotion> motions = labelled(6);
   motions[2].motion = slice(motions[2].motion, 0, static_cast<std::size_t>(1.4 * motions[2].motion.rate));
   motions.push_back(motions[0]);
@@ -130,8 +130,7 @@ TEST_CASE("short clips are skipped, and if none is left that is an error") {
   CHECK(ActionDataset::from_motions(motions, options).other_classes == 3);
   options.classes = {"walk", "swim"};
   CHECK_THROWS_WITH_AS((void)ActionDataset::from_motions(motions, options),
-                       doctest::Contains("the class 'swim' was asked for, but no clip is of it; the classes "
-                                         "are: 'walk', 'wave'"),
+                       doctest::Contains("no clip has the class 'swim'; the classes are: 'walk', 'wave'"),
                        Error);
 }
 
@@ -162,7 +161,7 @@ TEST_CASE("subjects stay together") {
   CHECK(ActionDataset::from_motions(own, options).test.size() == 4);
 }
 
-TEST_CASE("other joints are an error, other bone lengths are not") {
+TEST_CASE("different joints are an error, different bone lengths are not") {
   std::vector<LabelledMotion> motions = labelled(4);
   for (std::size_t f = 0; f < motions[3].motion.frames; ++f)
     for (std::size_t j = 1; j < motions[3].motion.skeleton.size(); ++j)
@@ -206,7 +205,7 @@ TEST_CASE("from a folder: BVH, CSV and NPY with labels from a file, folders or n
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const fs::path in = folder.path / motions[i].captions[0];
     fs::create_directories(in);
-    // Files round positions to single precision; labels and subjects are told by the name in front.
+    // Files round positions to single precision; labels and subjects come from the file name.
     if (i < 6)
       write_bvh(in / (motions[i].id + ".bvh"), motions[i].motion);
     else if (i == 6)
@@ -219,7 +218,7 @@ TEST_CASE("from a folder: BVH, CSV and NPY with labels from a file, folders or n
   ActionDatasetOptions options;
   options.bones = folder.path / "list.tsv";
   CHECK_THROWS_WITH_AS((void)ActionDataset::from_folder(folder.path, options),
-                       doctest::Contains("nothing says which class"), Error);
+                       doctest::Contains("there are no labels"), Error);
 
   options.folders = true;
   const ActionDataset by_folder = ActionDataset::from_folder(folder.path, options);
@@ -243,7 +242,7 @@ TEST_CASE("from a folder: BVH, CSV and NPY with labels from a file, folders or n
 
   options.folders = true;
   CHECK_THROWS_WITH_AS((void)ActionDataset::from_folder(folder.path, options),
-                       doctest::Contains("several places"), Error);
+                       doctest::Contains("several sources"), Error);
   options.folders = false;
   fs::remove(folder.path / "labels.csv");
   options.labels.clear();

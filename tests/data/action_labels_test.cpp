@@ -1,4 +1,4 @@
-// Labels from files, folders and names, and splits that respect classes and subjects.
+// Labels from files, folders and names, and splits by class and by subject.
 #include "motiongan/data/action_labels.hpp"
 
 #include <doctest/doctest.h>
@@ -28,14 +28,14 @@ TEST_CASE("a label file") {
   CHECK_THROWS_AS((void)read_action_labels("no/such/file.tsv"), Error);
 }
 
-TEST_CASE("a folder's name as label") {
+TEST_CASE("folder names as labels") {
   CHECK(label_from_folder("data/walk/01.bvh", "data") == "walk");
   CHECK(label_from_folder("data/walk/subject1/01.bvh", "data/") == "walk");
   CHECK_THROWS_WITH_AS((void)label_from_folder("data/01.bvh", "data"), doctest::Contains("data/01.bvh"),
                        Error);
 }
 
-TEST_CASE("what a pattern finds in a name") {
+TEST_CASE("patterns extract labels and subjects from names") {
   const auto parse = [](const char* pattern, const char* name) {
     const NameParts parts = NamePattern(pattern).parse(name);
     return parts.label + "|" + parts.subject;
@@ -46,7 +46,7 @@ TEST_CASE("what a pattern finds in a name") {
   CHECK(parse("{label}", "walk") == "walk|");
   CHECK(parse("*{label}.{subject}", "x_y_walk.4.5") == "walk|4.5");
   CHECK(parse("S{subject}-*", "S07-run-2") == "|07");
-  // A field may have to give letters back: "aXb" is "a", then "X", then "b".
+  // Matching may have to backtrack: "aXb" is "a", then "X", then "b".
   CHECK(parse("{label}X{subject}", "aXbXc") == "a|bXc");
   CHECK(parse("*_{label}", "a_b_c") == "c|");
 
@@ -63,13 +63,13 @@ TEST_CASE("what a pattern finds in a name") {
   CHECK_FALSE(NamePattern("{subject}_*").has_label());
 }
 
-TEST_CASE("a subject from a name") {
+TEST_CASE("subjects from names") {
   CHECK(subject_from_name("07_01") == "07");
   CHECK_THROWS_AS((void)subject_from_name("walk"), Error);
   CHECK_THROWS_AS((void)subject_from_name("_walk"), Error);
 }
 
-TEST_CASE("each class is split by itself") {
+TEST_CASE("each class is split separately") {
   std::vector<SplitClip> clips;
   for (std::size_t i = 0; i < 33; ++i) clips.push_back({i < 21 ? 0u : i < 30 ? 1u : i < 32 ? 2u : 3u, ""});
   const std::vector<bool> a = split_by_class(clips, 4, 0.67, 5);
@@ -86,8 +86,8 @@ TEST_CASE("each class is split by itself") {
   CHECK(split_by_class(clips, 4, 0.67, 6) != a);
 }
 
-TEST_CASE("whole subjects are split") {
-  // Class 1 has one subject of training only if "b" or "c" is there; sizes 5, 3, 2, 2.
+TEST_CASE("splits keep subjects whole") {
+  // Class 1 has a training subject only if "b" or "c" is one; sizes 5, 3, 2, 2.
   std::vector<SplitClip> clips;
   for (int i = 0; i < 5; ++i) clips.push_back({0, "a"});
   for (int i = 0; i < 3; ++i) clips.push_back({std::size_t(i > 0), "b"});
@@ -104,7 +104,7 @@ TEST_CASE("whole subjects are split") {
   CHECK_THROWS_AS((void)split_by_subject(clips, 2, 0, 1), Error);
   const std::vector<SplitClip> one(3, SplitClip{0, "a"});
   CHECK(split_by_subject(one, 1, 0.5, 1) == std::vector<bool>(3, true));
-  // Two subjects are always divided.
+  // Two subjects always go to different parts.
   const std::vector<SplitClip> two{{0, "a"}, {0, "b"}};
   const std::vector<bool> both = split_by_subject(two, 1, 1.0, 1);
   CHECK(both[0] != both[1]);

@@ -1,5 +1,5 @@
-// Data sets of classes from real clips, where they lie beside the project (MOTIONGAN_SHARED, else ../shared).
-// Skips with a message elsewhere.
+// Action data sets from real clips, if available (MOTIONGAN_SHARED, else ../shared). Skips with a message
+// otherwise.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A folder of the data, or nothing where it is absent.
+/// A folder of the data; empty if it does not exist.
 fs::path shared_data(const char* name) {
   const char* set = std::getenv("MOTIONGAN_SHARED");
   const fs::path shared = set ? fs::path(set) : fs::path(MOTIONGAN_SOURCE_DIR) / ".." / "shared";
@@ -32,8 +32,8 @@ double worst_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   return worst;
 }
 
-/// Positions of a file by forward kinematics come back from poses, over places and over a track; nobody
-/// turns by more than `most` radians in a frame.
+/// Positions of a file by forward kinematics round-trip through poses, over places and over a track; no turn
+/// exceeds `most` radians per frame.
 void check_round_trip(const fs::path& file, double most) {
   Clip clip = read_bvh(file);
   drop_first_frames(clip, FirstFrame::automatic);
@@ -51,14 +51,14 @@ void check_round_trip(const fs::path& file, double most) {
 
 }  // namespace
 
-TEST_CASE("CMU clips: joints that coincide with the root, a T-pose in front") {
+TEST_CASE("CMU clips: joints that coincide with the root, a T-pose at the start") {
   const fs::path folder = shared_data("cmu");
   if (folder.empty()) return;
   check_round_trip(folder / "16" / "16_15.bvh", 0.2);
   check_round_trip(folder / "02" / "02_01.bvh", 0.2);
   ActionDatasetOptions options;
   options.folders = true;
-  options.classes = {"02", "16"};  // by subject: the folders are called so
+  options.classes = {"02", "16"};  // by subject: the names of the folders
   const ActionDataset data = ActionDataset::from_folder(folder, options);
   CHECK(data.format.skeleton().size() == 31);
   CHECK(data.format.layout.dof() == 97);

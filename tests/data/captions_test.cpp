@@ -1,4 +1,4 @@
-// Words, vocabularies, caption files and captions made of names.
+// Words, vocabularies, caption files and captions made from names.
 #include "motiongan/data/captions.hpp"
 
 #include <doctest/doctest.h>
@@ -31,7 +31,7 @@ TEST_CASE("a vocabulary is sorted, starts with <unk>, and does not depend on the
   CHECK(Vocabulary().words() == std::vector<std::string>{"<unk>"});
   CHECK_THROWS_AS(Vocabulary(std::vector<std::string>{}), Error);
   CHECK_THROWS_AS(Vocabulary({"walk"}), Error);
-  CHECK_THROWS_WITH_AS(Vocabulary({"<unk>", "a", "a"}), doctest::Contains("'a', is in it twice"), Error);
+  CHECK_THROWS_WITH_AS(Vocabulary({"<unk>", "a", "a"}), doctest::Contains("'a', appears twice"), Error);
   CHECK_THROWS_AS(Vocabulary({"<unk>", "A"}), Error);
   CHECK_THROWS_AS(Vocabulary({"<unk>", ""}), Error);
 }
@@ -57,7 +57,7 @@ TEST_CASE("caption files") {
                        doctest::Contains("caption file /no/such/file does not exist"), Error);
 }
 
-TEST_CASE("captions made of names") {
+TEST_CASE("captions from names") {
   CHECK(caption_from_name("x/dataset-1_walk_not-confident_001.bvh") == "dataset walk not confident");
   CHECK(caption_from_name("data/jumping/01_07.bvh") == "jumping");
   CHECK(caption_from_name("cmu/01/01_07.bvh") == "01");
@@ -65,7 +65,7 @@ TEST_CASE("captions made of names") {
   CHECK(caption_from_name("Run2.bvh") == "run");
 }
 
-TEST_CASE("UTF-8 is told from what is not") {
+TEST_CASE("UTF-8 is validated") {
   CHECK(is_utf8(""));
   CHECK(is_utf8("plain"));
   CHECK(is_utf8("\xC3\xA9 \xE6\xAD\xA9 \xF0\x9F\x95\xBA"));

@@ -1,4 +1,4 @@
-// Data sets out of folders, and the split that is written beside them.
+// Data sets from folders, and their written splits.
 #include <doctest/doctest.h>
 #include <unistd.h>
 
@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A folder that is removed again.
+/// A temporary folder, removed at the end.
 struct Folder {
   fs::path path = fs::temp_directory_path() / ("motiongan_dataset_test_" + std::to_string(::getpid()));
   Folder() { fs::create_directories(path); }
@@ -33,7 +33,7 @@ std::set<std::string> ids(const std::vector<DatasetClip>& clips) {
 
 }  // namespace
 
-TEST_CASE("the split is seeded, complete, and written down") {
+TEST_CASE("the split is seeded, complete, and written to a file") {
   DatasetOptions options = eight_at(4);
   const Dataset a = Dataset::from_motions(several(12), options),
                 b = Dataset::from_motions(several(12), options);
@@ -43,7 +43,7 @@ TEST_CASE("the split is seeded, complete, and written down") {
   options.split_seed = 2;
   CHECK(ids(Dataset::from_motions(several(12), options).train) != ids(a.train));
   for (const std::string& id : ids(a.test)) CHECK(!ids(a.train).contains(id));
-  // The numbers themselves: the same on every machine and standard library.
+  // Fixed values: the same on every machine and with every standard library.
   CHECK(split_clips(8, 0.5, 1) == std::vector<bool>{false, false, true, true, true, false, false, true});
   std::uint64_t state = 0;
   CHECK(splitmix64(state) == 0xE220A8397B1DCDAFu);  // the published first value for seed 0

@@ -1,4 +1,4 @@
-// The rules by which clips become windows.
+// Conversion of clips to windows.
 #include "motiongan/data/dataset.hpp"
 
 #include <doctest/doctest.h>
@@ -12,7 +12,7 @@
 using namespace motiongan;
 using namespace motiongan::motion;
 
-TEST_CASE("windows: stride, starts, relative dimensions, and the way back to motion") {
+TEST_CASE("windows: stride, starts, relative dimensions, and conversion back to motion") {
   const std::vector<LabelledMotion> motions = several(6);
   const Dataset data = Dataset::from_motions(motions, eight_at(4));
   CHECK(data.stride == 15);
@@ -77,7 +77,7 @@ TEST_CASE("statistics are those of the training clips") {
   CHECK(std::abs(total / count - 1) < 1e-4);
 }
 
-TEST_CASE("rates that divide, that do not, that are too low, and that are mixed") {
+TEST_CASE("rates that are multiples, that are not, that are too low, and that differ") {
   const auto stride_of = [](std::vector<double> rates, double rate) {
     std::vector<LabelledMotion> motions;
     for (const double r : rates)
@@ -104,7 +104,7 @@ TEST_CASE("rates that divide, that do not, that are too low, and that are mixed"
   CHECK(natural_stride(3, 4) == 1);
 }
 
-TEST_CASE("short clips are left out and named; if all are, what would fit is said") {
+TEST_CASE("short clips are skipped and listed; if all are too short, the error suggests what would fit") {
   auto motions = several(3);
   motions.push_back({"short", walk(1.9, 60, 1), {"walk"}});
   motions.push_back({"just", walk(2, 60, 1), {"walk"}});
@@ -127,7 +127,7 @@ TEST_CASE("captions become sentences of the training vocabulary") {
     for (const int word : clip.sentences[0]) CHECK(word > 0);
     CHECK(clip.sentences[1] == std::vector<int>{v.find("go")});
   }
-  for (const DatasetClip& clip : data.test) CHECK(clip.sentences[0].back() == 0);  // its number is unseen
+  for (const DatasetClip& clip : data.test) CHECK(clip.sentences[0].back() == 0);  // its number is unknown
   auto motions = several(2);
   motions[1].captions = {"..."};
   CHECK_THROWS_WITH_AS(Dataset::from_motions(motions, eight_at(4)),
@@ -136,7 +136,7 @@ TEST_CASE("captions become sentences of the training vocabulary") {
   CHECK(Dataset::from_motions(motions, eight_at(4)).named == 1);
 }
 
-TEST_CASE("clips must share one skeleton, but not its lengths") {
+TEST_CASE("clips must share one skeleton, but not bone lengths") {
   auto motions = several(3);
   motions[1].motion.skeleton.joints[1].offset = {7, 0, 0};
   CHECK(Dataset::from_motions(motions, eight_at(4)).format.skeleton().joints[1].offset == Vec3{1, 0, 0});
@@ -147,7 +147,7 @@ TEST_CASE("clips must share one skeleton, but not its lengths") {
       Error);
   motions = several(2);
   motions[1].motion.skeleton.joints[1].channels.pop_back();
-  CHECK_THROWS_WITH_AS(Dataset::from_motions(motions, eight_at(4)), doctest::Contains("other channels"),
+  CHECK_THROWS_WITH_AS(Dataset::from_motions(motions, eight_at(4)), doctest::Contains("different channels"),
                        Error);
   motions = several(2);
   Motion& more = motions[1].motion;
@@ -155,7 +155,7 @@ TEST_CASE("clips must share one skeleton, but not its lengths") {
   more.rotations.assign(more.frames * 3, Quat{});
   more.positions.assign(more.frames * 3, Vec3{});
   CHECK_THROWS_WITH_AS(Dataset::from_motions(motions, eight_at(4)),
-                       doctest::Contains("2 and 3 joints, the first without a partner is 'Tail'"), Error);
+                       doctest::Contains("2 and 3 joints, the first unmatched joint is 'Tail'"), Error);
   motions = several(2);
   motions[1].id = "clip0";
   CHECK_THROWS_WITH_AS(Dataset::from_motions(motions, eight_at(4)),
@@ -180,7 +180,7 @@ TEST_CASE("without root position, and with clips in which nothing moves") {
                        doctest::Contains("nothing moves"), Error);
 }
 
-TEST_CASE("the position of the joint that travels is the one that is kept, whichever clip shows it") {
+TEST_CASE("the position of the travelling joint is kept, whichever clip shows it") {
   std::vector<LabelledMotion> motions;
   for (int i = 0; i < 3; ++i) {
     Motion m = walk(4, 60, i == 0 ? 0 : 1);

@@ -1,4 +1,4 @@
-// What a model file says about motion: JSON there and back, and what is refused.
+// MotionFormat through JSON and back, and errors.
 #include "motiongan/data/motion_format.hpp"
 
 #include <doctest/doctest.h>
@@ -42,7 +42,7 @@ MotionFormat small_format() {
 
 }  // namespace
 
-TEST_CASE("JSON text there and back is the same format") {
+TEST_CASE("a format round-trips through JSON text") {
   const MotionFormat a = small_format();
   const MotionFormat b = io::motion_format_from_json(nlohmann::json::parse(io::to_json(a).dump()));
   CHECK(a.skeleton() == b.skeleton());
@@ -59,7 +59,7 @@ TEST_CASE("JSON text there and back is the same format") {
   CHECK(mask == std::vector<bool>{false, false, false, false, true, false});
 }
 
-TEST_CASE("every root form, and the training range, survive JSON; older files have no range") {
+TEST_CASE("root representations and the training range survive JSON; older files have no range") {
   for (const RootRotation form : {RootRotation::expmap, RootRotation::heading, RootRotation::velocity}) {
     MotionFormat a = small_format();
     a.layout = PoseLayout(a.skeleton(), true, 1, form);
@@ -93,7 +93,7 @@ TEST_CASE("every root form, and the training range, survive JSON; older files ha
   CHECK(testing::says(refused("low", "x"), "'low' is string, expected numbers"));
 }
 
-TEST_CASE("normalised zeros are the mean pose, dropped dimensions too") {
+TEST_CASE("normalised zeros are the mean pose, including dropped dimensions") {
   const MotionFormat format = small_format();
   const std::vector<float> zeros(2 * format.dof(), 0.0f);
   const Motion motion = format.to_motion(zeros);
@@ -107,7 +107,7 @@ TEST_CASE("normalised zeros are the mean pose, dropped dimensions too") {
   CHECK_THROWS_WITH_AS(format.to_motion(std::vector<float>(7)), doctest::Contains("multiple of 6"), Error);
 }
 
-TEST_CASE("a broken description is refused with what is wrong") {
+TEST_CASE("errors in the JSON name the member") {
   const nlohmann::json good = io::to_json(small_format());
   struct Case {
     const char* key;
@@ -133,7 +133,7 @@ TEST_CASE("a broken description is refused with what is wrong") {
       {"relative_dims", {99}, "relative dimension 99"},
       {"relative_dims", {4, 4}, "relative dimension 4 is out of order"},
       {"vocabulary", nlohmann::json::array(), "expected '<unk>'"},
-      {"vocabulary", {"<unk>", "walk", "walk"}, "'walk', is in it twice"},
+      {"vocabulary", {"<unk>", "walk", "walk"}, "'walk', appears twice"},
       {"vocabulary", {"<unk>", "Two words"}, "expected lower-case letters and digits"}};
   for (const Case& c : cases) {
     nlohmann::json bad = good;

@@ -31,7 +31,7 @@ Motion spinning(std::size_t frames) {
 
 }  // namespace
 
-TEST_CASE("what each number of a pose is") {
+TEST_CASE("the values of a pose and their names") {
   const PoseLayout with(spinning(1).skeleton, true, 1), without(spinning(1).skeleton, false);
   CHECK(with.dof() == 12);
   CHECK(without.dof() == 9);
@@ -44,7 +44,7 @@ TEST_CASE("what each number of a pose is") {
   CHECK_THROWS_WITH_AS(PoseLayout(spinning(1).skeleton, true, 3), doctest::Contains("root joint 3"), Error);
 }
 
-TEST_CASE("poses of a motion are continuous and decode to it") {
+TEST_CASE("poses of a motion are continuous and decode to the motion") {
   const Motion m = spinning(60);  // the hips make almost three turns
   const PoseLayout layout(m.skeleton, true, 1);
   const std::vector<double> poses = layout.encode(m);
@@ -97,7 +97,7 @@ TEST_CASE("normalised values have mean 0 and deviation 1; constants are dropped 
   CHECK(Normalizer::fit(still, 2).kept() == std::vector<std::size_t>{1});
 }
 
-TEST_CASE("sizes that do not fit are refused") {
+TEST_CASE("sizes that do not match are errors") {
   const Normalizer n({1, 2, 3}, {1, 0, 1});
   const std::vector<double> seven(7);
   CHECK_THROWS_WITH_AS(n.normalize<float>(seven),

@@ -26,7 +26,7 @@ PositionFormat some_format(bool track) {
 
 }  // namespace
 
-TEST_CASE("a position format comes back exactly") {
+TEST_CASE("a position format round-trips exactly") {
   for (const bool track : {true, false}) {
     const PositionFormat format = some_format(track);
     const std::string text = io::to_json(format).dump();

@@ -1,4 +1,4 @@
-// What a model of positions must keep: classes, bones, and the way from normalised poses to bone vectors.
+// PositionFormat: classes, bones, and the map from normalised poses to bone vectors.
 #include "motiongan/data/position_format.hpp"
 
 #include <doctest/doctest.h>
@@ -13,7 +13,7 @@ using namespace motiongan::motion;
 
 namespace {
 
-/// The format of a procedural walk, a joint of zero length added below the head.
+/// The format of a procedural walk, with a joint of zero length added below the head.
 PositionFormat walking_format(std::vector<Vec3>& positions) {
   Motion motion = procedural_motion(0).motion;
   Joint tip;
@@ -38,7 +38,7 @@ PositionFormat walking_format(std::vector<Vec3>& positions) {
 
 }  // namespace
 
-TEST_CASE("positions come back from normalised poses") {
+TEST_CASE("positions round-trip through normalised poses") {
   std::vector<Vec3> positions;
   const PositionFormat format = walking_format(positions);
   format.check();
@@ -93,18 +93,19 @@ TEST_CASE("bones, and their vectors as a linear map of the normalised pose") {
   }
 }
 
-TEST_CASE("a class that is not there: the error lists those there are") {
+TEST_CASE("the error for an unknown class lists the classes") {
   std::vector<Vec3> positions;
   const PositionFormat format = walking_format(positions);
   CHECK(format.class_index("run") == 1);
   CHECK_THROWS_WITH_AS((void)format.class_index("wlak"),
-                       "there is no class 'wlak'; is 'walk' meant? The classes are: 'dance', 'run', 'walk'",
+                       "there is no class 'wlak'; did you mean 'walk'? The classes are: 'dance', 'run', "
+                       "'walk'",
                        Error);
   CHECK_THROWS_WITH_AS((void)format.class_index("somersault"),
                        "there is no class 'somersault'. The classes are: 'dance', 'run', 'walk'", Error);
 }
 
-TEST_CASE("parts that do not fit are errors") {
+TEST_CASE("inconsistent members are errors") {
   std::vector<Vec3> positions;
   const PositionFormat good = walking_format(positions);
   const auto broken = [&](auto change, const char* message) {

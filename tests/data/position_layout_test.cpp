@@ -1,4 +1,4 @@
-// Poses of positions: facing told by left and right, the root's track taken away and put back.
+// Pose vectors of positions: heading from left and right joints, the root's track removed and restored.
 #include "motiongan/data/position_layout.hpp"
 
 #include <doctest/doctest.h>
@@ -52,10 +52,10 @@ TEST_CASE("mirrored joints are found by their names") {
   CHECK_FALSE(are_mirrored("Spine", "Spine"));
 }
 
-TEST_CASE("what lies across a body") {
+TEST_CASE("joint pairs across the body") {
   CHECK(across_body(small_skeleton()) == std::vector<JointPair>{{1, 2}});
 
-  SUBCASE("mirrored joints that coincide give way to those below them") {
+  SUBCASE("mirrored joints that coincide are replaced by those below them") {
     Skeleton s;
     s.joints = {{"Hips", -1, {}, {}, {}},
                 {"LHipJoint", 0, {}, {}, {}},
@@ -64,7 +64,7 @@ TEST_CASE("what lies across a body") {
                 {"RightUpLeg", 3, {-1, -1, 0}, {}, {}}};
     CHECK(across_body(s) == std::vector<JointPair>{{2, 4}});
   }
-  SUBCASE("without sides in the names: the widest pair of the first branching") {
+  SUBCASE("without sides in the names: the widest pair at the first branching") {
     Skeleton s;
     s.joints = {{"a", -1, {}, {}, {}},
                 {"b", 0, {0, 5, 0}, {}, {}},
@@ -72,7 +72,7 @@ TEST_CASE("what lies across a body") {
                 {"d", 0, {0, 0, -2}, {}, {}}};
     CHECK(across_body(s) == std::vector<JointPair>{{2, 3}});
   }
-  SUBCASE("a chain has nothing across, and its yaw is 0") {
+  SUBCASE("a chain has no such pair, and its yaw is 0") {
     Skeleton s;
     s.joints = {{"a", -1, {}, {}, {}}, {"b", 0, {0, 5, 0}, {}, {}}};
     CHECK(across_body(s).empty());
@@ -81,7 +81,7 @@ TEST_CASE("what lies across a body") {
   }
 }
 
-TEST_CASE("poses are what the body looks like from its root") {
+TEST_CASE("poses are relative to the root") {
   const PositionLayout layout(small_skeleton(), true);
   CHECK(layout.dof() == 16);
   CHECK(layout.track_dim() == 12);
@@ -92,7 +92,7 @@ TEST_CASE("poses are what the body looks like from its root") {
   CHECK(layout.name(15) == "Hips.turn");
   CHECK_THROWS_AS((void)layout.name(16), Error);
 
-  // Faces +x (yaw 90 degrees), goes 2 along x, then turns by 0.25 on the way 1 along z.
+  // Faces +x (yaw 90 degrees), moves 2 along x, then 1 along z while turning by 0.25.
   std::vector<Vec3> positions;
   append_body(positions, 10, 3, 20, pi / 2);
   append_body(positions, 12, 4, 20, pi / 2);
@@ -104,11 +104,11 @@ TEST_CASE("poses are what the body looks like from its root") {
   for (std::size_t f = 0; f < 3; ++f) {
     for (std::size_t d = 0; d < 12; ++d) CHECK(poses[16 * f + d] == doctest::Approx(body[d]).epsilon(1e-12));
     for (std::size_t d = 0; d < 4; ++d)
-      CHECK(std::abs(poses[16 * f + 12 + d] - tracks[f][d]) < 1e-12);  // first frame as the second
+      CHECK(std::abs(poses[16 * f + 12 + d] - tracks[f][d]) < 1e-12);  // first frame like the second
   }
 }
 
-TEST_CASE("the yaw is counted through whole turns and kept where nothing tells it") {
+TEST_CASE("the yaw is unwrapped over whole turns and kept while undetermined") {
   const PositionLayout layout(small_skeleton());
   std::vector<Vec3> positions;
   for (int f = 0; f < 40; ++f) append_body(positions, 0, 0, 0, 0.3 * f);
@@ -116,17 +116,17 @@ TEST_CASE("the yaw is counted through whole turns and kept where nothing tells i
   for (int f = 0; f < 40; ++f)
     CHECK(places[static_cast<std::size_t>(f)].yaw == doctest::Approx(0.3 * f).epsilon(1e-12));
 
-  // Lying on the side: left straight above right.
+  // Lying on the side: left vertically above right.
   std::vector<Vec3> lying;
   append_body(lying, 0, 0, 0, 0.7);
   lying.insert(lying.end(), {{0, 0, 0}, {0, 1, 0}, {0, -1, 0}, {1, 0, 0}});
   CHECK(layout.places(lying)[1].yaw == doctest::Approx(0.7));
-  // Who begins so faces as in the first frame that tells.
+  // At the start, the first determined yaw applies.
   std::rotate(lying.begin(), lying.begin() + 4, lying.end());
   CHECK(layout.places(lying)[0].yaw == doctest::Approx(0.7));
 }
 
-TEST_CASE("positions come back, over their own places, over a track, and in pieces") {
+TEST_CASE("positions round-trip over their own places, over a track, and in pieces") {
   for (const std::size_t index : {0u, 3u, 7u, 12u}) {
     const Motion motion = procedural_motion(index).motion;
     const std::vector<Vec3> positions = joint_positions(motion);
@@ -157,7 +157,7 @@ TEST_CASE("positions come back, over their own places, over a track, and in piec
     joined.insert(joined.end(), rest.begin(), rest.end());
     CHECK(joined == decoded);
 
-    // A continuation goes on where the prior ends.
+    // A continuation starts where the prior ends.
     RootTrack on = layout.track_of(positions, motion.frames / 3 - 1);
     CHECK(worst_distance(
               layout.decode(std::span(poses).subspan(cut), &on),
@@ -166,7 +166,7 @@ TEST_CASE("positions come back, over their own places, over a track, and in piec
   }
 }
 
-TEST_CASE("where and which way somebody stands does not change the pose") {
+TEST_CASE("position and heading do not change the pose") {
   const Motion motion = procedural_motion(0).motion;
   const std::vector<Vec3> positions = joint_positions(motion);
   std::vector<Vec3> moved;
@@ -178,7 +178,7 @@ TEST_CASE("where and which way somebody stands does not change the pose") {
   CHECK(worst < 1e-9);
 }
 
-TEST_CASE("without root track the body stands at the track's place") {
+TEST_CASE("without root track the body stays at the track's position") {
   const PositionLayout layout(small_skeleton(), false);
   CHECK(layout.dof() == 12);
   CHECK_THROWS_AS((void)layout.track_dim(), Error);
@@ -196,7 +196,7 @@ TEST_CASE("without root track the body stands at the track's place") {
   CHECK(at.height == 7);
 }
 
-TEST_CASE("bad positions are errors") {
+TEST_CASE("invalid positions are errors") {
   const PositionLayout layout(small_skeleton());
   std::vector<Vec3> positions(5);
   CHECK_THROWS_WITH_AS((void)layout.encode(positions), doctest::Contains("found 5 positions"), Error);

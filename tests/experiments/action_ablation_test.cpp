@@ -1,4 +1,4 @@
-// The seven variants of the second paper's comparison, its tables, and what they say of the paper's claims.
+// The seven variants of the action-model ablation, its tables, and the verdicts on the paper's claims.
 #include "motiongan/experiments/action_ablation.hpp"
 
 #include <doctest/doctest.h>
@@ -46,7 +46,7 @@ std::string text_of(const std::filesystem::path& path) { return motion::read_tex
 
 }  // namespace
 
-TEST_CASE("seven variants, each the full one but for what its name says") {
+TEST_CASE("seven variants, each differing from the full model as its name says") {
   REQUIRE(ablation_variants().size() == 7);
   const ActionGanOptions model{.hidden = 12, .noise_dim = 3};
   AttentionTrainOptions training;
@@ -74,7 +74,7 @@ TEST_CASE("seven variants, each the full one but for what its name says") {
   CHECK(says(message_of([] { ablation_variant("half"); }), "full, no_attention, no_blend, no_skeleton"));
 }
 
-TEST_CASE("tables: the truth first, lengths in millimetres where the unit is known") {
+TEST_CASE("tables: ground truth first, lengths in millimetres if the unit is known") {
   const ActionEvaluation evaluation(small_data(), {.windows = 4, .frames = 3});
   const std::filesystem::path path =
       std::filesystem::temp_directory_path() / ("motiongan-ablation-" + std::to_string(getpid()) + ".csv");
@@ -100,7 +100,7 @@ TEST_CASE("tables: the truth first, lengths in millimetres where the unit is kno
   std::filesystem::remove(path);
 }
 
-TEST_CASE("claims: only of variants that are there, yes and no") {
+TEST_CASE("only claims about the given variants are judged") {
   const std::vector<AblationResult> results{result("full", 1, 2, 0.01), result("no_attention", 3, 1, 0),
                                             result("no_blend", 0.5, 9, 0.03), result("lstm", 1.05, 0, 0)};
   const std::vector<AblationClaim> claims = judge_claims(results, true);
@@ -109,13 +109,13 @@ TEST_CASE("claims: only of variants that are there, yes and no") {
       if (c.claim.starts_with(start)) return static_cast<int>(c.verdict);
     return -1;
   };
-  CHECK(held("attention: nearer") == int(Verdict::yes));
-  CHECK(held("the blend loss: nearer") == int(Verdict::no));
-  CHECK(held("the blend loss: smaller steps") == int(Verdict::yes));
-  CHECK(held("nearer to the truth's curve than the LSTM") == int(Verdict::even));
-  CHECK(held("the skeleton loss") == -1);
-  CHECK(held("the LSTM: nearer at first") == int(Verdict::yes));  // 1 to 2 degrees off, 40 to 39
+  CHECK(held("attention: closer") == int(Verdict::yes));
+  CHECK(held("blend loss: closer") == int(Verdict::no));
+  CHECK(held("blend loss: smaller jumps") == int(Verdict::yes));
+  CHECK(held("closer to the ground-truth curve than the LSTM") == int(Verdict::even));
+  CHECK(held("skeleton loss") == -1);
+  CHECK(held("LSTM: its error grows") == int(Verdict::yes));  // error 1 to 2 degrees, angle 40 to 39
   for (const AblationClaim& c : claims)
-    if (c.claim.starts_with("the blend loss: smaller")) CHECK(c.evidence == "full 10, no_blend 30 mm");
+    if (c.claim.starts_with("blend loss: smaller")) CHECK(c.evidence == "full 10, no_blend 30 mm");
   CHECK(judge_claims({}, true).empty());
 }

@@ -1,4 +1,4 @@
-// The second paper's evaluation: which windows, and what is measured of models that do a known wrong.
+// Evaluation of action models: the choice of windows, and the measures of models with known errors.
 #include "motiongan/experiments/action_evaluation.hpp"
 
 #include <doctest/doctest.h>
@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::size_t prior_frames = 4;
 
-/// A leg of two bones, each 1 long, that walks along x by `step` a frame and bends its knee by 2 degrees a
-/// frame, from `bend` on. Nothing lies across it: its yaw is 0.
+/// A leg of two bones of length 1 that moves along x by `step` per frame and bends its knee by 2 degrees per
+/// frame, starting at `bend`. It has no lateral bones, so its yaw is 0.
 motion::PositionClip leg(const std::string& id, std::size_t frames, double bend, double step) {
   motion::PositionClip clip{id, {}, 10, frames, {}};
   clip.skeleton.joints = {
@@ -26,7 +26,7 @@ motion::PositionClip leg(const std::string& id, std::size_t frames, double bend,
   for (std::size_t f = 0; f < frames; ++f) {
     const double angle = motion::radians(bend + 2 * double(f)),
                  x = step * double(f) + 0.05 * std::sin(double(f));
-    // The whole leg swings a little too, so that no dimension is constant.
+    // The whole leg also swings a little, so that no channel is constant.
     const double swing = 0.1 * std::sin(0.7 * double(f));
     const Vec3 hip{x, 2 + 0.01 * std::sin(double(f)), 0.02 * std::cos(double(f))};
     const Vec3 knee = motion::add(hip, {std::sin(swing), -std::cos(swing), 0});
@@ -36,7 +36,7 @@ motion::PositionClip leg(const std::string& id, std::size_t frames, double bend,
   return clip;
 }
 
-/// Clips of two classes, "bent" three times as many; half are for testing.
+/// Clips of two classes, with three times as many of "bent"; half are for testing.
 motion::ActionDataset legs(std::size_t frames = 20) {
   std::vector<motion::PositionClip> clips;
   motion::ActionLabels labels;
@@ -53,7 +53,7 @@ motion::ActionDataset legs(std::size_t frames = 20) {
   return motion::ActionDataset::from_positions(clips, labels, options);
 }
 
-/// Gives back what `change` makes of the real future, pose by pose.
+/// A model that returns the real future, each pose modified by `change`.
 template <class Change>
 FutureMaker truth_with(const ActionEvaluation& evaluation, Change change) {
   return [&evaluation, change](std::span<const std::vector<float>> priors, std::span<const std::size_t>,
@@ -69,7 +69,7 @@ FutureMaker truth_with(const ActionEvaluation& evaluation, Change change) {
   };
 }
 
-/// Turns the shank about the knee so that the knee bends by `degrees` more.
+/// Rotates the shank about the knee so that the knee bends by `degrees` more.
 void bend(Vec3* pose, double degrees) {
   const Vec3 shank = motion::subtract(pose[2], pose[1]);
   const double a = motion::radians(degrees);
@@ -79,7 +79,7 @@ void bend(Vec3* pose, double degrees) {
 
 }  // namespace
 
-TEST_CASE("windows: of long test clips alone, classes in turn, none twice, the same for the same seed") {
+TEST_CASE("windows: from long test clips only, balanced, distinct, reproducible") {
   const motion::ActionDataset data = legs();
   std::size_t fitting = 0;
   for (const auto& clip : data.test) fitting += clip.frames >= prior_frames + 10;
@@ -107,14 +107,14 @@ TEST_CASE("windows: of long test clips alone, classes in turn, none twice, the s
     same = same && other.windows[i].clip == w.windows[i].clip && other.windows[i].start == w.windows[i].start;
   }
   CHECK_FALSE(same);
-  // More than there are: every start of every long clip, once.
+  // More than exist: every start of every long clip once.
   CHECK(choose_windows(data, 10, 1000).windows.size() == fitting * (20 - prior_frames - 10 + 1));
   CHECK(says(message_of([&] { choose_windows(data, 17, 8); }), "lasts 21 frames"));
   CHECK(says(message_of([&] { choose_windows(data, 17, 8); }), "the longest has 20"));
   CHECK_THROWS_AS(choose_windows(data, 0, 8), Error);
 }
 
-TEST_CASE("the real motion: its curve by hand, whole bones, its own steps") {
+TEST_CASE("measures of the real motion") {
   const motion::ActionDataset data = legs();
   const ActionEvaluation evaluation(data, {.windows = 6, .frames = 10, .unit_metres = 0.1});
   const ActionMeasures& truth = evaluation.truth();
@@ -135,7 +135,7 @@ TEST_CASE("the real motion: its curve by hand, whole bones, its own steps") {
   CHECK(truth.seam == doctest::Approx(truth.step).epsilon(0.2));
 }
 
-TEST_CASE("models that do a known wrong") {
+TEST_CASE("models with known errors") {
   const motion::ActionDataset data = legs();
   const ActionEvaluation evaluation(data, {.windows = 6, .frames = 10, .unit_metres = 0.1});
   const ActionMeasures exact =
@@ -145,7 +145,7 @@ TEST_CASE("models that do a known wrong") {
   CHECK(exact.step == doctest::Approx(evaluation.truth().step).epsilon(1e-4));
   CHECK(exact.seam == doctest::Approx(evaluation.truth().seam).epsilon(1e-4));
 
-  // Knees bent too far by 3 degrees, and from frame 6 on by 9: the last 4 frames are wholly 9 off.
+  // Knees bent 3 degrees too far, 9 from frame 6 on: the error of the last 4 frames is 9.
   const ActionMeasures bent = evaluation.measure(
       truth_with(evaluation, [](std::size_t, std::size_t f, Vec3* pose) { bend(pose, f < 6 ? 3 : 9); }));
   CHECK(bent.curve_error == doctest::Approx((6 * 3 + 4 * 9) / 10.0).epsilon(1e-3));
@@ -155,13 +155,13 @@ TEST_CASE("models that do a known wrong") {
   CHECK(bent.window_error_deviation < 1e-3);
   CHECK(bent.bone_error < 1e-3);
 
-  // Too far in half the windows, not far enough in the others: the curve is right, no window is.
+  // Too far in half of the windows and too little in the others: no curve error, but window errors.
   const ActionMeasures both = evaluation.measure(truth_with(
       evaluation, [](std::size_t i, std::size_t, Vec3* pose) { bend(pose, i % 2 == 0 ? 4 : -4); }));
   CHECK(both.curve_error < 1e-3);
   CHECK(both.window_error == doctest::Approx(4).epsilon(1e-3));
 
-  // Shanks 10% too long: one bone of two.
+  // Shanks 10% too long: one of two bones.
   const ActionMeasures longer =
       evaluation.measure(truth_with(evaluation, [](std::size_t, std::size_t, Vec3* pose) {
         pose[2] = motion::add(pose[1], motion::scale(motion::subtract(pose[2], pose[1]), 1.1));
@@ -169,7 +169,7 @@ TEST_CASE("models that do a known wrong") {
   CHECK(longer.bone_error == doctest::Approx(5).epsilon(1e-3));
   CHECK(longer.curve_error < 1e-2);
   CHECK(longer.broken == 0);
-  // One window in six falls apart, in its last four frames alone: thighs are three times too long.
+  // One of six windows is broken, in its last four frames only: its thigh is far too long.
   const ActionMeasures apart =
       evaluation.measure(truth_with(evaluation, [](std::size_t i, std::size_t f, Vec3* pose) {
         if (i != 2 || f < 6) return;
@@ -177,8 +177,8 @@ TEST_CASE("models that do a known wrong") {
       }));
   CHECK(apart.broken == doctest::Approx(1 / 6.0));
 
-  // Feet that jump 3 up at the beginning of the second second and stay there: one seam of three (frames 0, 4
-  // and 8) by 3 in one joint of three, besides what the body does anyway.
+  // Feet that jump up by 3 at frame 4 and stay there: one of three seams (frames 0, 4 and 8), by 3 in one of
+  // three joints, in addition to the real motion.
   const auto lift = [](std::size_t, std::size_t f, Vec3* pose) {
     if (f >= 4) pose[2][1] += 3;
   };
@@ -187,7 +187,7 @@ TEST_CASE("models that do a known wrong") {
   CHECK(jump.seam - evaluation.truth().seam == doctest::Approx(0.1 * 3 / 3.0 / 3).epsilon(0.15));
   CHECK(jump.seam_body - evaluation.truth().seam_body == doctest::Approx(0.1 * 3 / 3.0 / 3).epsilon(0.15));
 
-  // The prior's last pose held: no step, no way, and the angle of that frame for ever.
+  // The prior's last pose held: no displacement, and a constant angle.
   const ActionMeasures still = evaluation.measure(stand_still(data.format));
   CHECK(still.step < 1e-5);
   CHECK(still.speed < 1e-4);
@@ -198,7 +198,7 @@ TEST_CASE("models that do a known wrong") {
   CHECK(alone.bone_error < 1e-3);
 }
 
-TEST_CASE("networks as makers: the same as their own, second after second, and one not changed by others") {
+TEST_CASE("future_maker() equals feeding back the model's output, independent of the other windows") {
   const Context context;
   const motion::ActionDataset data = legs();
   const ActionEvaluation evaluation(data, {.windows = 3, .frames = 10});
@@ -215,7 +215,7 @@ TEST_CASE("networks as makers: the same as their own, second after second, and o
           Var::constant(one_hot(context, std::vector<std::size_t>{evaluation.labels()[b]}, 2));
       std::vector<float> wanted;
       for (Var fed = Var::constant(prior); wanted.size() < 10 * dof;) {
-        fed = model.make(fed, classes);
+        fed = model.forward(fed, classes);
         const std::vector<float> values = fed.value().to_host();
         wanted.insert(wanted.end(), values.begin(), values.end());
       }

@@ -1,4 +1,4 @@
-// The study of synthetic clips: what it measures, and that both classifiers differ only in their clips.
+// The augmentation study: what it measures, and that the classifiers differ only in their clips.
 #include <doctest/doctest.h>
 
 #include <motiongan/experiments/augmentation_study.hpp>
@@ -40,7 +40,7 @@ TEST_CASE("mean and spread") {
   CHECK_THROWS_AS(mean_spread({}), Error);
 }
 
-TEST_CASE("a classifier learns what it is shown; accuracy counts windows and clips") {
+TEST_CASE("a classifier learns its training clips; accuracy over windows and clips") {
   const ActionDataset& d = data();
   const AttentionClassifier fresh =
       train_classifier(context(), d, d.train, 1, {.iterations = 1, .batch = 8, .hidden = 8});
@@ -57,7 +57,7 @@ TEST_CASE("a classifier learns what it is shown; accuracy counts windows and cli
                       after = accuracy_on(context(), learnt, d, d.train);
   CHECK(after.windows > 0.8);
   CHECK(after.windows > before.windows);
-  // By hand: the clips of one class alone, all windows called so or not.
+  // The accuracy over windows is the weighted mean of the clips' accuracies.
   double share = 0;
   std::size_t windows = 0;
   for (const motion::ActionClip& clip : d.train) {
@@ -66,10 +66,10 @@ TEST_CASE("a classifier learns what it is shown; accuracy counts windows and cli
     windows += n;
   }
   CHECK(after.windows == doctest::Approx(share / static_cast<double>(windows)));
-  CHECK_THROWS_WITH_AS(accuracy_on(context(), learnt, d, {}), doctest::Contains("no clips held out"), Error);
+  CHECK_THROWS_WITH_AS(accuracy_on(context(), learnt, d, {}), doctest::Contains("no held-out clips"), Error);
 }
 
-TEST_CASE("the study compares the same classifier on two sets of clips") {
+TEST_CASE("the study compares the same classifier on two training sets") {
   const ActionDataset& d = data();
   const ActionGan model(context(), d.format, {.hidden = 8});
   const auto synthetic = as_clips_of(d, model, synthesise(model, d, d.train));
@@ -87,7 +87,7 @@ TEST_CASE("the study compares the same classifier on two sets of clips") {
   for (const AugmentationStudyRow& row : rows)
     for (const double share : {row.real.windows, row.real.clips, row.augmented.windows, row.augmented.clips})
       CHECK((share >= 0 && share <= 1));
-  // The real one does not depend on what is synthetic.
+  // The classifier of real clips does not depend on the synthetic ones.
   const StudyAccuracy alone =
       accuracy_on(context(), train_classifier(context(), d, d.train, 1, small), d, d.test);
   CHECK(rows[0].real.windows == alone.windows);

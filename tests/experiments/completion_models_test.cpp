@@ -1,4 +1,5 @@
-// Models in Table 3: what they are trained on, and that their errors are those of what they make one by one.
+// Models in the completion experiment: their training data, and their errors compared with single
+// predictions.
 #include <doctest/doctest.h>
 
 #include <motiongan/experiments/completion_models.hpp>
@@ -31,7 +32,7 @@ bool same(double a, double b) { return std::abs(a - b) < 1e-4 * (1 + std::abs(b)
 
 }  // namespace
 
-TEST_CASE("predictors see every training clip with its action's number") {
+TEST_CASE("the baselines' data contains every training clip with its action") {
   const PredictionData data = prediction_data(small_h36m());
   CHECK(data.dof == 14);
   CHECK(data.action_count == 2);
@@ -39,9 +40,9 @@ TEST_CASE("predictors see every training clip with its action's number") {
   CHECK(data.sequences[3] == small_h36m().train()[3].poses);
 }
 
-TEST_CASE("a predictor's errors are those of its predictions one by one") {
+TEST_CASE("a baseline's errors equal those of single predictions") {
   const CompletionData& data = small_h36m();
-  const PredictionModel model(context(), 14, 2,
+  const PredictionModel model(context(), {14, 2},
                               {.predictor = Predictor::seq2seq, .hidden = 8, .labels = true, .seed = 3});
   const auto errors = prediction_errors(model, data);
   REQUIRE(errors.size() == 1);
@@ -55,7 +56,7 @@ TEST_CASE("a predictor's errors are those of its predictions one by one") {
   CHECK(mean[5] > 0.01);
 }
 
-TEST_CASE("a DVGAN's data set: every second frame, all clips for training, the action for a caption") {
+TEST_CASE("DVGAN's data set: every second frame, all clips for training, the action as caption") {
   const CompletionData& data = small_h36m();
   const motion::Dataset set = completion_dataset(data, 40, 2);
   CHECK(set.train.size() == 5);
@@ -74,13 +75,13 @@ TEST_CASE("a DVGAN's data set: every second frame, all clips for training, the a
              "no training file holds 51 frames with a stride of 2; the longest allows 50"));
 }
 
-TEST_CASE("a DVGAN's errors are those of its completions, at the times that it has") {
+TEST_CASE("DVGAN's errors equal those of its completions, at the times of its frames") {
   const CompletionData& data = small_h36m();
   const motion::Dataset set = completion_dataset(data, 40, 2);
   const Dvgan model(context(), set.format, {.generator = GeneratorKind::rnn, .hidden = 8, .seed = 2});
   const SampledErrors one = dvgan_errors(model, data, 2, 1, 5), three = dvgan_errors(model, data, 2, 3, 5);
 
-  // Test t's sample s is number 65536 t + s of the seed; the prefix is frames 1, 3, ... 49.
+  // Sample s of test t is sample 65536 t + s of the seed; the prefix is frames 1, 3, ... 49.
   const NoGrad values_only;
   CompletionErrors mean{}, mean3{}, best3{};
   for (std::size_t t = 0; t < 8; ++t) {
@@ -102,7 +103,7 @@ TEST_CASE("a DVGAN's errors are those of its completions, at the times that it h
               .value()
               .to_host();
       std::vector<float> prediction(25 * 14);
-      for (std::size_t p = 1; p <= 12; ++p)  // predicted frame p stands 2 p frames after the prefix
+      for (std::size_t p = 1; p <= 12; ++p)  // predicted frame p is 2 p frames after the prefix
         std::copy_n(made.begin() + static_cast<std::ptrdiff_t>((24 + p) * 14), 14,
                     prediction.begin() + static_cast<std::ptrdiff_t>((2 * p - 1) * 14));
       const CompletionErrors errors = data.errors(test, prediction);
@@ -127,7 +128,7 @@ TEST_CASE("a DVGAN's errors are those of its completions, at the times that it h
   CHECK(dvgan_errors(model, data, 2, 3, 5).mean[0][3] == three.mean[0][3]);
 }
 
-TEST_CASE("models that do not fit are refused") {
+TEST_CASE("models that do not fit the data are refused") {
   const CompletionData& data = small_h36m();
   motion::Dataset set = completion_dataset(data, 32, 2);
   const Dvgan cnn(context(), set.format, {.generator = GeneratorKind::cnn, .hidden = 8});
@@ -138,5 +139,5 @@ TEST_CASE("models that do not fit are refused") {
   set.format.low.clear(), set.format.high.clear();
   const Dvgan other(context(), set.format, {.generator = GeneratorKind::rnn, .hidden = 8});
   CHECK(says(message_of([&] { dvgan_errors(other, data, 2, 1, 1); }), "trained on other data"));
-  CHECK(says(message_of([&] { dvgan_errors(other, data, 2, 0, 1); }), "0 samples were asked for"));
+  CHECK(says(message_of([&] { dvgan_errors(other, data, 2, 0, 1); }), "samples is 0"));
 }

@@ -1,4 +1,4 @@
-// What the protocol of Table 3 gives and measures: by hand on made-up files, and on the CMU texts.
+// The completion protocol: computed by hand on synthetic files, and published values on the CMU text.
 #include <doctest/doctest.h>
 
 #include <cstdlib>
@@ -34,7 +34,7 @@ TEST_CASE("training clips are every second row, normalised by all rows; constant
   CHECK(data.rate() == 25);
   CHECK(data.train_count(0) == 3);
   CHECK(data.train_count(1) == 2);
-  // Files were written with phases 0.3, 0.6, ... in the order of write_small_h36m.
+  // The files have phases 0.3, 0.6, ... in the order of write_small_h36m().
   double mean = 0, square = 0;
   for (const double phase : {0.3, 0.6, 1.5, 0.9, 1.2})
     for (std::size_t f = 0; f < 200; ++f) mean += swing(f, 7, phase) / 1000;
@@ -48,11 +48,11 @@ TEST_CASE("training clips are every second row, normalised by all rows; constant
   CHECK(clip.frames == 100);
   CHECK(clip.poses[3 * 14 + 7] ==
         doctest::Approx((swing(6, 7, 0.6) - mean) / std::sqrt(square)).epsilon(1e-4));
-  // Column 8 is not there: number 8 of a pose is column 9.
+  // Column 8 is dropped, so channel 8 of a pose is column 9.
   CHECK(data.normalizer().kept()[8] == 9);
 }
 
-TEST_CASE("tests alternate between the two files, at numpy's draws") {
+TEST_CASE("tests alternate between the two files and start at NumPy's draws") {
   const CompletionData data = small_h36m();
   REQUIRE(data.tests().size() == 16);
   NumpyRandom random(1234567890);
@@ -63,7 +63,7 @@ TEST_CASE("tests alternate between the two files, at numpy's draws") {
     CHECK(test.file == (i % 2 == 0 ? "S5/walking_1" : "S5/walking_2"));
     const auto start = static_cast<std::size_t>(random.randint(16, 175 - 150));
     CHECK(test.start == start);
-    CHECK(data.tests()[8 + i].start == start);  // every action draws anew
+    CHECK(data.tests()[8 + i].start == start);  // every action restarts the generator
     const double phase = i % 2 == 0 ? 1.8 : 2.1;
     CHECK(test.prefix.size() == 50 * 14);
     CHECK(test.truth.size() == 75 * 15);
@@ -74,11 +74,11 @@ TEST_CASE("tests alternate between the two files, at numpy's draws") {
   }
 }
 
-TEST_CASE("errors are over Euler angles of the columns from 6 on, at frames 1, 3, 7, 9, 13 and 24") {
+TEST_CASE("errors are of Euler angles of the columns from 6 on, at frames 1, 3, 7, 9, 13 and 24") {
   const CompletionData data = small_h36m();
   const CompletionTest& test = data.tests()[3];
-  // The truth itself but for one number: column 12, the first of the last joint, is off by 0.1 from frame 7
-  // on. The root's columns are far off and do not count.
+  // Ground truth except for column 12, the first of the last joint, which is off by 0.1 from frame 7 on. The
+  // root's columns are far off and must be ignored.
   std::vector<double> made(test.truth.begin() + 50 * 15, test.truth.end());
   for (std::size_t f = 0; f < 25; ++f) made[f * 15] += 5, made[f * 15 + 4] -= 3;
   for (std::size_t f = 7; f < 25; ++f) made[f * 15 + 12] += 0.1;
@@ -97,7 +97,7 @@ TEST_CASE("errors are over Euler angles of the columns from 6 on, at frames 1, 3
   }
 }
 
-TEST_CASE("zero velocity holds the last frame given, the mean is over an action's eight tests") {
+TEST_CASE("zero velocity holds the last frame of the prefix; errors are means over eight tests") {
   const CompletionData data = small_h36m();
   const auto rows = zero_velocity_errors(data);
   REQUIRE(rows.size() == 2);
@@ -117,7 +117,7 @@ TEST_CASE("zero velocity holds the last frame given, the mean is over an action'
   CHECK(rows[1][4] == doctest::Approx(sum).epsilon(1e-4));
 }
 
-TEST_CASE("what the protocol cannot use") {
+TEST_CASE("files that the protocol cannot use are refused") {
   const ExpmapFolder folder;
   testing::write_small_cmu(folder.path());
   const auto refusal = [&] {
@@ -131,7 +131,7 @@ TEST_CASE("what the protocol cannot use") {
   CHECK(says(refusal(), "nothing moves"));
 }
 
-TEST_CASE("the CMU texts' zero velocity, to three decimals") {
+TEST_CASE("zero velocity on the CMU text, to three decimals") {
   const char* set = std::getenv("MOTIONGAN_SHARED");
   const auto shared =
       (set ? std::filesystem::path(set) : std::filesystem::path(MOTIONGAN_SOURCE_DIR) / ".." / "shared") /

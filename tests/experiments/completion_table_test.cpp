@@ -1,4 +1,4 @@
-// Table 3 as files: numbers where there are some, nothing where there are none.
+// The table of completion errors as CSV, Markdown and JSON, with missing values.
 #include <doctest/doctest.h>
 
 #include <limits>
@@ -26,7 +26,7 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 
 }  // namespace
 
-TEST_CASE("the mean over actions is there where all actions are") {
+TEST_CASE("the mean over actions requires all actions") {
   const CompletionTable table = small_table(false);
   const CompletionErrors mean = mean_over_actions(table.rows[0]);
   CHECK(mean[0] == doctest::Approx(.2));
@@ -36,7 +36,7 @@ TEST_CASE("the mean over actions is there where all actions are") {
   CHECK_FALSE(table.rows[1].has(1));
 }
 
-TEST_CASE("published rows are those of the actions that the paper has") {
+TEST_CASE("published rows exist for the paper's actions only") {
   const auto rows = published_completion_rows({"posing", "eating"});
   REQUIRE(rows.size() == 6);
   CHECK(rows[0].published);
@@ -49,7 +49,7 @@ TEST_CASE("published rows are those of the actions that the paper has") {
   CHECK(published_completion_rows({"posing"}).empty());
 }
 
-TEST_CASE("CSV: a line for each number") {
+TEST_CASE("CSV: a line for each error") {
   const std::string csv = completion_csv(small_table(true));
   CHECK(csv.starts_with("action,model,source,iterations,milliseconds,true_milliseconds,error\n"));
   CHECK(has(csv, "\nwalking,one,measured,70,80,33.3,0.100000\n"));
@@ -60,7 +60,7 @@ TEST_CASE("CSV: a line for each number") {
   CHECK_FALSE(has(csv, "mean,two"));
 }
 
-TEST_CASE("Markdown: a table for each action, with the true times where they differ") {
+TEST_CASE("Markdown: a table for each action, with the true times if they differ") {
   const std::string cmu = completion_markdown(small_table(true), {"Mind the times."});
   CHECK(
       cmu.starts_with("# Completion error, cmu\n\nMind the times.\n\n## walking\n\n"
@@ -76,7 +76,7 @@ TEST_CASE("Markdown: a table for each action, with the true times where they dif
   CHECK(has(text, "| SRNN (published) | 0.81 | 0.94 | 1.16 | 1.30 | - | - |"));
 }
 
-TEST_CASE("JSON: null where there is nothing") {
+TEST_CASE("JSON: null for missing errors") {
   const nlohmann::json json = completion_json(small_table(true));
   CHECK(json["layout"] == "cmu");
   CHECK(json["milliseconds"][5] == 1000);

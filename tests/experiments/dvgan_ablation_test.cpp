@@ -1,4 +1,4 @@
-// The first paper's comparison: its variants, their options and what is said of several seeds.
+// The DVGAN ablation: its variants, their options, and statistics over seeds.
 #include <doctest/doctest.h>
 
 #include <motiongan/experiments/dvgan_ablation.hpp>
@@ -9,7 +9,7 @@
 using namespace motiongan;
 using namespace motiongan::testing;
 
-TEST_CASE("every combination has a name of its own, and is found by it") {
+TEST_CASE("every combination has a unique name and is found by it") {
   const std::vector<DvganVariant> all = all_dvgan_variants();
   std::set<std::string> names;
   for (const DvganVariant& v : all) {
@@ -23,7 +23,7 @@ TEST_CASE("every combination has a name of its own, and is found by it") {
   CHECK(says(message_of([] { dvgan_variant("cnn-dense"); }), "no variant called \"cnn-dense\""));
 }
 
-TEST_CASE("the paper's rows come in its order, each once") {
+TEST_CASE("the paper's rows come once each, in its order") {
   std::vector<std::string> names;
   for (const DvganVariant& v : paper_dvgan_variants()) names.push_back(v.name());
   CHECK(names == std::vector<std::string>{"cnn-cnn-final", "cnn-cnn-mod2", "cnn-cnn-dense",
@@ -39,7 +39,7 @@ TEST_CASE("the paper's rows come in its order, each once") {
   CHECK(dvgan_variant("cnn-rnn").find(paper::table_s1_h36m)->recall[0] == 64.7);
 }
 
-TEST_CASE("a variant changes its own options and no others") {
+TEST_CASE("a variant changes only its own options") {
   const DvganVariant v = dvgan_variant("rnn-cnn-mod2-cut");
   const DvganOptions model = v.model({.hidden = 24, .seed = 5});
   CHECK(model.generator == GeneratorKind::rnn);
@@ -54,7 +54,7 @@ TEST_CASE("a variant changes its own options and no others") {
   CHECK_FALSE(dvgan_variant("cnn-rnn").model({}).cuts());  // off, not the generator's default
 }
 
-TEST_CASE("mean and spread over seeds, and differences seed by seed") {
+TEST_CASE("mean and spread over seeds, and paired differences") {
   const auto run = [](std::uint64_t seed, double score) {
     DvganRun out{seed, 1, {}};
     out.evaluation.measures.inception_score = score;
@@ -64,7 +64,7 @@ TEST_CASE("mean and spread over seeds, and differences seed by seed") {
   const DvganAblationRow a{{}, {run(1, 1.0), run(2, 5.0), run(3, 2.0)}},
       b{{}, {run(2, 5.5), run(1, 2.5), run(9, 0.0)}};
   CHECK(a.over_seeds(score).mean == doctest::Approx(8.0 / 3));
-  const MeanStd d = paired_difference(a, b, score);  // 1.5 and 0.5
+  const MeanStd d = paired_difference(a, b, score);  // differences 1.5 and 0.5
   CHECK(d.count == 2);
   CHECK(paired_difference(a, DvganAblationRow{}, score).count == 0);
   CHECK(d.mean == doctest::Approx(1.0));

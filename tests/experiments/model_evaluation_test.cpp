@@ -1,4 +1,4 @@
-// A generator beside real motion: which motions are measured, and that the same ones are.
+// Evaluation of a generator against real motion: which motions are measured, and reproducibility.
 #include "motiongan/experiments/model_evaluation.hpp"
 
 #include <doctest/doctest.h>
@@ -12,7 +12,7 @@ using namespace motiongan;
 
 namespace {
 
-/// Windows of 8 frames at 4 Hz of clips of which some have the same description.
+/// Windows of 8 frames at 4 Hz; some of the clips share a description.
 const motion::Dataset& small_data() {
   static const motion::Dataset data = motion::Dataset::from_motions(
       motion::procedural_motions({.clips = 48, .seconds = 6, .rate = 8, .seed = 3}),
@@ -30,7 +30,7 @@ ModelEvaluationOptions few() {
 
 }  // namespace
 
-TEST_CASE("real windows: so many of each description, all of them right ones") {
+TEST_CASE("real windows: the given number for each description") {
   const motion::Dataset& data = small_data();
   const Context context;
   const Ranker ranker(context, data.format, {.kind = RankerKind::rnn, .hidden = 16});
@@ -50,7 +50,7 @@ TEST_CASE("real windows: so many of each description, all of them right ones") {
   CHECK(real.measures.quality.bone_error < 1e-3);
   CHECK(real.measures.quality.frames == 5 * k * data.format.frames);
 
-  // Training clips with the same descriptions: counted by hand.
+  // Count the descriptions that training clips have too.
   std::set<std::vector<std::string>> trained;
   for (const motion::DatasetClip& clip : data.train)
     for (const std::string& caption : clip.captions) trained.insert(motion::split_words(caption));
@@ -59,7 +59,7 @@ TEST_CASE("real windows: so many of each description, all of them right ones") {
   CHECK(real.training_descriptions == common);
   CHECK(real.training.has_value() == (common > 0));
 
-  // The five windows of the first description are those of its clips, in turn; the first is a clip's first.
+  // The windows of the first description come from its clips in turn, starting with the first window of one.
   std::vector<float> window(data.format.frames * data.format.dof());
   for (std::size_t c = 0; c < data.test.size(); ++c) {
     const auto& of = real.descriptions.of_clip[c];
@@ -72,7 +72,7 @@ TEST_CASE("real windows: so many of each description, all of them right ones") {
   }
 }
 
-TEST_CASE("a generator's motions: its own, of every description, the same for the same seed") {
+TEST_CASE("generated motions: the given number for each description, reproducible") {
   const motion::Dataset& data = small_data();
   const Context context;
   const Ranker ranker(context, data.format, {.kind = RankerKind::rnn, .hidden = 16});
@@ -85,9 +85,9 @@ TEST_CASE("a generator's motions: its own, of every description, the same for th
   CHECK(once.distance.dimensions == 16);
   CHECK(once.distance.samples1 == real.measures.motions);
   REQUIRE(real.training);
-  CHECK(once.distance.distance > real.training->distance);  // weights are fresh: it knows nothing of motion
+  CHECK(once.distance.distance > real.training->distance);  // untrained weights
 
-  // By the parts: the same motions, ranked and compared.
+  // The same motions, measured directly.
   std::vector<motion::Motion> motions;
   std::vector<std::vector<std::size_t>> right;
   for (std::size_t d = 0; d < real.descriptions.size(); ++d)
@@ -102,7 +102,7 @@ TEST_CASE("a generator's motions: its own, of every description, the same for th
   CHECK(once.distance.distance == doctest::Approx(frechet_distance(features, real.features, 16).distance));
   CHECK(once.measures.quality.jerk == doctest::Approx(measure_quality(motions).jerk));
 
-  // The whole at once is the same.
+  // The single call gives the same.
   const ModelEvaluation again = evaluate_model(cnn, ranker, data, options);
   CHECK(again.distance.distance == doctest::Approx(once.distance.distance));
   CHECK(again.measures.inception_score == doctest::Approx(once.measures.inception_score));
@@ -111,7 +111,7 @@ TEST_CASE("a generator's motions: its own, of every description, the same for th
   CHECK(evaluate_model(cnn, ranker, real, other).measures.diversity != once.measures.diversity);
 }
 
-TEST_CASE("an RNN generator's drift; metres where the unit is known") {
+TEST_CASE("drift of an RNN generator; metres if the unit is known") {
   const motion::Dataset& data = small_data();
   const Context context;
   const Ranker ranker(context, data.format, {.kind = RankerKind::cnn, .hidden = 16});
@@ -128,7 +128,7 @@ TEST_CASE("an RNN generator's drift; metres where the unit is known") {
   CHECK(std::isfinite(e.drift->last.mean));
 }
 
-TEST_CASE("what cannot be measured is refused") {
+TEST_CASE("invalid options and missing test clips are refused") {
   const motion::Dataset& data = small_data();
   const Context context;
   const Ranker ranker(context, data.format, {.kind = RankerKind::rnn, .hidden = 16});

@@ -1,4 +1,4 @@
-// numpy's numbers, drawn by numpy 1.24 for the same seeds.
+// Reference values drawn with NumPy 1.24 for the same seeds.
 #include <doctest/doctest.h>
 
 #include <motiongan/experiments/numpy_random.hpp>
@@ -20,7 +20,7 @@ using Numbers = std::vector<std::int64_t>;
 
 }  // namespace
 
-TEST_CASE("the eight draws of the protocol, for files of 1500 and 1400 frames in turn") {
+TEST_CASE("the eight draws of the protocol, for two files of 1500 and 1400 frames") {
   NumpyRandom random(1234567890);
   Numbers found;
   for (int i = 0; i < 8; ++i) found.push_back(random.randint(16, (i % 2 == 0 ? 1500 : 1400) - 150));
@@ -36,7 +36,7 @@ TEST_CASE("other seeds and ranges") {
   CHECK(draw(d, 0, 105, 8) == Numbers{2, 102, 47, 12, 51, 33, 43, 60});
 }
 
-TEST_CASE("ranges wider than 32 bits take two numbers, a range of one takes none") {
+TEST_CASE("a range wider than 32 bits takes two words per draw, a range of one value none") {
   NumpyRandom random(7);
   const std::int64_t far = std::int64_t{1} << 62;
   CHECK(draw(random, -far, far, 3) == Numbers{-3204046499487750972, 551904368352831990, 3475536756154880211});

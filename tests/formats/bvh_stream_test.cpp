@@ -19,7 +19,7 @@ using namespace motiongan::motion;
 
 namespace {
 
-/// 500 frames in which the hips make whole turns, so that angles pass the places where they could jump.
+/// 500 frames in which the hips make whole turns, so that angles pass through possible jumps.
 Motion turning() {
   Motion m = walk(500.0 / 60, 60, 1.3);
   for (std::size_t f = 0; f < m.frames; ++f)
@@ -61,7 +61,7 @@ TEST_CASE("pieces of any size give the file of the whole, byte for byte") {
   CHECK(read_bvh(folder.path / "empty.bvh").frames == 0);
 }
 
-TEST_CASE("without finish nothing is left, and the old file stays") {
+TEST_CASE("without finish nothing is left behind, and the old file stays") {
   const Folder folder;
   const auto path = folder.path / "walk.bvh";
   write_text_atomically(path, "old");
@@ -76,7 +76,7 @@ TEST_CASE("without finish nothing is left, and the old file stays") {
   CHECK(read_text(path, "file") == "old");
 }
 
-TEST_CASE("a piece that does not fit is refused, and the rest goes on as if it had not come") {
+TEST_CASE("a piece that does not fit is rejected, and writing continues as if it had not been appended") {
   const Folder folder;
   const Motion m = turning();
   write_bvh(folder.path / "whole.bvh", m);

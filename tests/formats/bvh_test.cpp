@@ -1,4 +1,4 @@
-// BVH in and out: odd but sound files, broken files and their messages, and round trips.
+// BVH reading and writing: unusual but valid files, broken files and their messages, and round trips.
 #include "motiongan/formats/bvh.hpp"
 
 #include <doctest/doctest.h>
@@ -66,7 +66,7 @@ TEST_CASE("a small file is read as written") {
         std::vector<double>{1, 2, 3, 10, 20, 30, 40, 1.5, -2.25, 0.3, 0, 0, 0.000001, -179.999999});
 }
 
-TEST_CASE("the same clip in other dress") {
+TEST_CASE("the same clip in other formatting") {
   const Clip clip = parse_bvh(arm, "arm");
   std::string upper = arm, lower = arm;
   for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
@@ -204,10 +204,10 @@ TEST_CASE("broken files: the place, what was found, what was expected") {
   }
 }
 
-TEST_CASE("a file cut off anywhere is an error, never a crash; so is every single byte of nonsense") {
+TEST_CASE("a truncated file is an error, never a crash; so is any single corrupted byte") {
   const std::size_t last_digit = arm.size() - 1;
   for (std::size_t n = 0; n < arm.size(); ++n) {
-    // Cutting digits off the last number leaves a sound file.
+    // Cutting digits off the last number leaves a valid file.
     if (n > arm.rfind("-179") + 1 && n <= last_digit) continue;
     CAPTURE(n);
     CHECK_THROWS_AS(parse_bvh(arm.substr(0, n), "cut"), Error);
@@ -228,11 +228,11 @@ TEST_CASE("a file cut off anywhere is an error, never a crash; so is every singl
   CHECK(errors > arm.size());
 }
 
-TEST_CASE("deep nesting is refused by name, not by a crash") {
+TEST_CASE("deep nesting is an error that names the joint, not a crash") {
   std::string text = "HIERARCHY\nROOT j\n{\nOFFSET 0 0 0\n";
   for (int i = 0; i < 100000; ++i) text += "JOINT j" + std::to_string(i) + "\n{\nOFFSET 0 0 0\n";
   CHECK_THROWS_WITH_AS(parse_bvh(text, "deep"), doctest::Contains("nested 1001 deep"), Error);
-  // As deep as is allowed works, out and in again.
+  // The maximum depth works, for writing and reading.
   Skeleton chain;
   for (int i = 0; i < 1000; ++i) chain.joints.push_back({"j" + std::to_string(i), i - 1, {0, 1, 0}, {}, {}});
   CHECK(parse_hierarchy(format_hierarchy(chain), "chain") == chain);
@@ -265,7 +265,7 @@ TEST_CASE("write, read, write: the same text and the same numbers") {
                        doctest::Contains("h:16:1"), Error);
 }
 
-TEST_CASE("files: written whole, read back, clear about paths") {
+TEST_CASE("files are written atomically and read back, and errors name the path") {
   namespace fs = std::filesystem;
   const fs::path folder = fs::temp_directory_path() / ("motiongan_bvh_test_" + std::to_string(::getpid()));
   fs::create_directories(folder);
@@ -290,7 +290,7 @@ TEST_CASE("files: written whole, read back, clear about paths") {
   clip.channels[3] = std::nan("");
   CHECK_THROWS_WITH_AS(write_bvh(folder / "walk 1.bvh", clip), doctest::Contains("frame 1, channel 4"),
                        Error);
-  CHECK(read_bvh(folder / "walk 1.bvh").channels == again.channels);  // the old file still stands
+  CHECK(read_bvh(folder / "walk 1.bvh").channels == again.channels);  // the old file is unchanged
   CHECK_THROWS_WITH_AS(read_bvh(folder / "none.bvh"), doctest::Contains("does not exist"), Error);
   CHECK_THROWS_WITH_AS(read_bvh(folder), doctest::Contains("is a folder"), Error);
   CHECK_THROWS_WITH_AS(write_bvh(folder / "no" / "x.bvh", again), doctest::Contains("does its folder exist"),
@@ -298,7 +298,7 @@ TEST_CASE("files: written whole, read back, clear about paths") {
   fs::remove_all(folder);
 }
 
-TEST_CASE("skeletons that BVH cannot hold are not written") {
+TEST_CASE("skeletons that BVH cannot hold are rejected") {
   Skeleton s = parse_bvh(arm, "arm").skeleton;
   for (const char* name : {"", " a", "a ", "a\nb", "{a", "a{", "a {b"}) {
     s.joints[1].name = name;

@@ -1,4 +1,4 @@
-// Text files of exponential maps: their numbers, the folders of Human3.6M and CMU, and what is refused.
+// Text files of exponential maps: values, the folder layouts of Human3.6M and CMU, and errors.
 #include <doctest/doctest.h>
 
 #include <cstdlib>
@@ -27,25 +27,25 @@ std::vector<std::string> ids_of(const std::vector<ExpmapClip>& clips) {
 
 }  // namespace
 
-TEST_CASE("lines of numbers with commas or blanks between them") {
+TEST_CASE("lines of numbers separated by commas or blanks") {
   const ExpmapText text = parse_expmap_text("1,-2.5e-1, +3\r\n\r\n4 5\t6,\n7,8,9", "a.txt");
   CHECK(text.columns == 3);
   CHECK(text.frames == 3);
   CHECK(text.values == std::vector<double>{1, -0.25, 3, 4, 5, 6, 7, 8, 9});
 }
 
-TEST_CASE("what is no frame is refused with its place") {
+TEST_CASE("invalid frames are errors with their line") {
   CHECK(says(refusal("1,2,3\n\n4,x5,6\n"), "a.txt:3: found 'x5', expected a finite number"));
   CHECK(says(refusal("1,2,3\n4,5.1.2,6\n"), "a.txt:2: found '5.1.2'"));
   CHECK(says(refusal("1,nan,3\n"), "a.txt:1: found 'nan'"));
   CHECK(says(refusal("1,1e999,3\n"), "a.txt:1: found '1e999'"));
   CHECK(says(refusal("1,2,3\n4,5\n"), "a.txt:2: found 2 numbers, expected 3 as in line 1"));
-  CHECK(says(refusal("\n1,2,3,4\n"), "a.txt:2: found 4 numbers, expected three for every joint"));
+  CHECK(says(refusal("\n1,2,3,4\n"), "a.txt:2: found 4 numbers, expected three per joint"));
   CHECK(says(refusal(" \n"), "a.txt: found no numbers"));
   CHECK(says(message_of([] { read_expmap_text("absent.txt"); }), "absent.txt does not exist"));
 }
 
-TEST_CASE("Human3.6M's folders: subject 5 is for testing, both of its files; missing ones are passed over") {
+TEST_CASE("Human3.6M's folders: subject 5 is for testing, both of its files; missing files are skipped") {
   const ExpmapFolder folder;
   testing::write_small_h36m(folder.path());
   folder.write("S5/posing_1.txt", "1,2,3\n");  // has no second file
@@ -62,7 +62,7 @@ TEST_CASE("Human3.6M's folders: subject 5 is for testing, both of its files; mis
   CHECK(all.test[2].text.values[16] == doctest::Approx(testing::swing(1, 1, 1.8)).epsilon(1e-6));
 
   const ExpmapCollection one = read_expmap_collection(folder.path(), {.actions = {"walking"}});
-  CHECK(one.train.size() == 5);  // what is tested does not change what is trained on
+  CHECK(one.train.size() == 5);  // test actions do not change the training set
   CHECK(one.test.size() == 2);
   CHECK(one.classes == all.classes);
   const ExpmapCollection less = read_expmap_collection(folder.path(), {.train_actions = {"walking"}});
@@ -75,10 +75,10 @@ TEST_CASE("Human3.6M's folders: subject 5 is for testing, both of its files; mis
     CHECK_MESSAGE(says(found, why), found);
   };
   refused({"posing"}, "no test file of the action 'posing'");
-  refused({"posing"}, "those that have one: eating, walking");
-  refused({"walking", "walking"}, "asked for twice");
+  refused({"posing"}, "actions that have one: eating, walking");
+  refused({"walking", "walking"}, "is given twice");
   folder.write("S1/walking_2.txt", "1,2,3\n");
-  refused({"walking", "eating"}, "S1/walking_2.txt has 3 numbers a line");
+  refused({"walking", "eating"}, "S1/walking_2.txt has 3 numbers per line");
 }
 
 TEST_CASE("CMU's folders: the first test file of each action") {
@@ -95,16 +95,16 @@ TEST_CASE("CMU's folders: the first test file of each action") {
   CHECK(says(message_of([&] { read_expmap_collection(folder.path(), {.train_actions = {"washwindow"}}); }),
              "no training file of the action 'washwindow'"));
   CHECK(says(message_of([&] { read_expmap_collection(folder.path(), {.layout = ExpmapLayout::h36m}); }),
-             "has no folder S5, which the layout h36m has"));
+             "has no folder S5, which the layout h36m requires"));
 }
 
-TEST_CASE("folders that tell no layout, or two") {
+TEST_CASE("folders that match no layout, or both") {
   const ExpmapFolder folder;
   CHECK(says(message_of([&] { find_expmap_layout(folder.path()); }), "has neither the folder S5"));
   CHECK(says(message_of([&] { find_expmap_layout(folder.path() / "absent"); }), "is not a folder"));
   testing::write_small_cmu(folder.path());
   std::filesystem::create_directory(folder.path() / "S5");
-  CHECK(says(message_of([&] { find_expmap_layout(folder.path()); }), "say which layout is meant"));
+  CHECK(says(message_of([&] { find_expmap_layout(folder.path()); }), "give the layout"));
   CHECK(read_expmap_collection(folder.path(), {.layout = ExpmapLayout::cmu}).test.size() == 2);
 }
 

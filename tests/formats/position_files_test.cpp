@@ -1,4 +1,4 @@
-// Positions as CSV and NPY: numbers by hand, round trips, and every way a file can be wrong.
+// Positions as CSV and NPY: known values, round trips, and errors.
 #include "motiongan/formats/position_files.hpp"
 
 #include <doctest/doctest.h>
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// An empty folder of its own, gone at the end.
+/// A temporary folder, removed at the end.
 struct Folder {
   fs::path path =
       fs::temp_directory_path() / ("motiongan_position_files_" + std::to_string(std::uintptr_t(this)));
@@ -36,7 +36,7 @@ struct Folder {
 
 const char* const leg = "# a leg\nHip\t-\r\n\nKnee\tHip\nToe.Tip\tKnee\n";
 
-/// Three frames of the leg with numbers that no two fields share.
+/// Three frames of the leg in which all values are distinct.
 PositionClip leg_clip() {
   PositionClip clip;
   clip.skeleton = parse_bone_list(leg, "leg");
@@ -88,7 +88,7 @@ TEST_CASE("a bone list names joints and parents") {
 
   const auto wrong = [](const char* text) { return message_of([&] { parse_bone_list(text, "f"); }); };
   CHECK(says(wrong("Hip -\n"), "f:1: found no tab in 'Hip -'"));
-  CHECK(says(wrong("Hip\t-\nHip\tHip\n"), "f:2: joint 'Hip' was named before"));
+  CHECK(says(wrong("Hip\t-\nHip\tHip\n"), "f:2: joint 'Hip' is listed twice"));
   CHECK(says(wrong("Hip\t-\n\nToe\tKnee\nKnee\tHip\n"),
              "f:3: joint 'Toe' has the parent 'Knee', which no line above"));
   CHECK(says(wrong("Hip\t-\nTail\t-\n"), "f:2: found a second root, 'Tail'"));
@@ -111,13 +111,13 @@ TEST_CASE("offsets are the first frame's directions and the mean lengths") {
   s = with_offsets_of(s, positions);
   CHECK(s.joints[0].offset == Vec3{0, 0, 0});
   CHECK(s.joints[1].offset == Vec3{3, 0, 0});
-  CHECK(s.joints[2].offset == Vec3{0, 0, 0});  // C always stands at B
-  CHECK(s.joints[3].offset == Vec3{0, 0, 3});  // only the second frame shows where D lies
+  CHECK(s.joints[2].offset == Vec3{0, 0, 0});  // C always coincides with B
+  CHECK(s.joints[3].offset == Vec3{0, 0, 3});  // D has a direction only in the second frame
   CHECK_THROWS_AS(with_offsets_of(s, std::vector<Vec3>(5)), Error);
   CHECK_THROWS_AS(with_offsets_of(s, {}), Error);
 }
 
-TEST_CASE("CSV by hand: columns in any order, times, CRLF") {
+TEST_CASE("CSV: columns in any order, times, CRLF") {
   const Skeleton s = parse_bone_list("A\t-\nB\tA\n", "s");
   const PositionClip clip = parse_position_csv(
       "\xEF\xBB\xBFtime, B.z,B.x,B.y,A.x,A.y,A.z\r\n1.000,6,4,5,1,2,3\r\n1.033,+7,4,5,-1e0,2,3\r\n"
@@ -135,15 +135,15 @@ TEST_CASE("CSV by hand: columns in any order, times, CRLF") {
             .rate == 120);
 }
 
-TEST_CASE("CSV that is wrong is refused with the place") {
+TEST_CASE("invalid CSV is an error with its line") {
   const Skeleton s = parse_bone_list("A\t-\nB\tA\n", "s");
   const std::string header = "A.x,A.y,A.z,B.x,B.y,B.z\n";
   const auto wrong = [&](const std::string& text, double rate = 30) {
     return message_of([&] { parse_position_csv(text, s, rate, "c"); });
   };
   CHECK(says(wrong("A.x,A.y,A.z,B.x,B.y\n1,2,3,4,5\n"), "c:1: the column 'B.z' is missing"));
-  CHECK(says(wrong("A.x,A.y,A.z,B.x,B.y,B.z,B.x\n"), "c:1: the column 'B.x' comes twice"));
-  CHECK(says(wrong("A.x,A.y,A.z,B.x,B.y,B.z,C.x\n"), "c:1: column 7 is of joint 'C'"));
+  CHECK(says(wrong("A.x,A.y,A.z,B.x,B.y,B.z,B.x\n"), "c:1: the column 'B.x' appears twice"));
+  CHECK(says(wrong("A.x,A.y,A.z,B.x,B.y,B.z,C.x\n"), "c:1: column 7 is for joint 'C'"));
   CHECK(says(wrong("A.x,A.y,A.w\n"), "c:1: column 3 is called 'A.w'"));
   CHECK(says(wrong(""), "c:1: column 1 is called ''"));
   CHECK(says(wrong(header), "c: found no frames"));
@@ -151,16 +151,16 @@ TEST_CASE("CSV that is wrong is refused with the place") {
   CHECK(says(wrong(header + "1,2,3,4,5,nan\n"), "c:2: found 'nan' in column 6 (joint 'B')"));
   CHECK(says(wrong(header + "1,2,3,4,1e999,6\n"), "c:2: found '1e999' in column 5"));
   CHECK(says(wrong(header + "1,2,,4,5,6\n"), "c:2: found '' in column 3 (joint 'A')"));
-  CHECK(says(wrong(header + "1,2,3,4,5,6\n", 0), "the rate is given as 0"));
+  CHECK(says(wrong(header + "1,2,3,4,5,6\n", 0), "the rate is 0"));
   CHECK(says(wrong("time," + header + "0,1,2,3,4,5,6\n", 0),
-             "the rate is given as 0"));  // one frame has no step
+             "the rate is 0"));  // a single frame has no time step
   const std::string row = ",1,2,3,4,5,6\n";
   CHECK(says(wrong("time," + header + "0" + row + "0.1" + row + "0.3" + row), "c:3: the time is 0.1 s"));
-  CHECK(says(wrong("time," + header + "1" + row + "0" + row), "expected them to grow"));
+  CHECK(says(wrong("time," + header + "1" + row + "0" + row), "expected increasing times"));
   CHECK(says(wrong("time," + header + "x" + row), "c:2: found 'x' in column 1 (time)"));
 }
 
-TEST_CASE("NPY by hand: both types, both byte orders, both index orders, both shapes") {
+TEST_CASE("NPY: both types, both byte orders, both index orders, both shapes") {
   const Skeleton s = parse_bone_list("A\t-\nB\tA\n", "s");
   for (const char* type : {"<f4", "<f8", ">f4", ">f8"}) {
     const std::string data = numbers(12, type[2] == '4', type[0] == '>');
@@ -179,7 +179,7 @@ TEST_CASE("NPY by hand: both types, both byte orders, both index orders, both sh
       const PositionClip f = parse_position_npy(
           npy(concat("{\"fortran_order\":True,\"shape\":", shape, ",\"descr\":\"", type, "\"}\n"), data, 2),
           s, 30, "n");
-      // The frame runs fastest, then the joint, then x, y, z (or the column).
+      // The frame varies fastest, then the joint, then x, y, z (or the column).
       CHECK(f.positions[0] == (flat ? Vec3{1, 3, 5} : Vec3{1, 5, 9}));
       CHECK(f.positions[1] == (flat ? Vec3{7, 9, 11} : Vec3{3, 7, 11}));
       CHECK(f.positions[2] == (flat ? Vec3{2, 4, 6} : Vec3{2, 6, 10}));
@@ -187,7 +187,7 @@ TEST_CASE("NPY by hand: both types, both byte orders, both index orders, both sh
   }
 }
 
-TEST_CASE("NPY that is wrong is refused with what was found") {
+TEST_CASE("invalid NPY is an error that says what was found") {
   const Skeleton s = parse_bone_list("A\t-\nB\tA\n", "s");
   const std::string data = numbers(12, true, false);
   const auto wrong = [&](const std::string& bytes, double rate = 30) {
@@ -197,38 +197,38 @@ TEST_CASE("NPY that is wrong is refused with what was found") {
     return concat("{'descr': ", type, ", 'fortran_order': False, 'shape': ", shape, ", }\n");
   };
   CHECK(wrong(npy(header("'<f4'", "(2, 2, 3)"), data)) == "no error");
-  CHECK(says(wrong("PK\x03\x04 and so on, a zip"), "n: this is no .npy file"));
+  CHECK(says(wrong("PK\x03\x04 and so on, a zip"), "n: not an .npy file"));
   CHECK(says(wrong(npy(header("'<f4'", "(2, 6)"), data, 9)), "version 9.0"));
-  CHECK(says(wrong(npy(header("'<f4'", "(2, 6)"), "").substr(0, 40)), "it was cut off"));
+  CHECK(says(wrong(npy(header("'<f4'", "(2, 6)"), "").substr(0, 40)), "the file is truncated"));
   CHECK(says(wrong(npy(header("'<i8'", "(2, 6)"), data)), "of type '<i8', expected '<f4'"));
   CHECK(says(wrong(npy(header("[('x', '<f4')]", "(2, 6)"), data)), "structured"));
   CHECK(says(wrong(npy(header("'<f4'", "(4, 3)"), data)),
              "the shape is [4, 3], expected [frames, 2, 3] or [frames, 6]"));
   CHECK(says(wrong(npy(header("'<f4'", "()"), data)), "the shape is []"));
-  CHECK(says(wrong(npy(header("'<f4'", "(2, x)"), data)), "the shape holds 'x'"));
+  CHECK(says(wrong(npy(header("'<f4'", "(2, x)"), data)), "the shape contains 'x'"));
   CHECK(says(wrong(npy(header("'<f4'", "(0, 6)"), "")), "found no frames"));
   CHECK(
       says(wrong(npy(header("'<f4'", "(3, 6)"), data)), "found 48 bytes of numbers, expected 3 frames x 6"));
   CHECK(says(wrong(npy("{'descr': '<f4', 'shape': (2, 6)}\n", data)), "no entry 'fortran_order'"));
-  CHECK(says(wrong(npy(header("'<f4'", "(2, 6)"), data), 0), "the rate is given as 0"));
+  CHECK(says(wrong(npy(header("'<f4'", "(2, 6)"), data), 0), "the rate is 0"));
   std::string bad = data;
   bad.replace(32, 4, {"\0\0\x80\x7f", 4});  // number 9 of 12 is infinite
   CHECK(says(wrong(npy(header("'<f4'", "(2, 6)"), bad)), "n: frame 2, joint 'A': found inf"));
 }
 
-TEST_CASE("files round trip, and the bone list beside them is found") {
+TEST_CASE("files round-trip, and the bone list next to them is found") {
   const Folder folder;
   const PositionClip clip = leg_clip();
   write_position_npy(folder.path / "leg.npy", clip);
   write_position_csv(folder.path / "leg.csv", clip);
   CHECK(says(message_of([&] { read_position_file(folder.path / "leg.npy", {}, 30); }),
-             "put one there, or name"));
+             "create it, or give a bone list"));
   write_bone_list(folder.path / bone_list_name, clip.skeleton);
 
   const PositionClip n = read_position_file(folder.path / "leg.npy", {}, 30);
   CHECK(n.id == "leg");
   CHECK(n.rate == 30);
-  CHECK(n.positions == clip.positions);  // to the last bit
+  CHECK(n.positions == clip.positions);  // bit for bit
   CHECK(fs::file_size(folder.path / "leg.npy") == 128 + 27 * 8);
   CHECK(length(n.skeleton.joints[1].offset) > 0);
 
@@ -246,7 +246,7 @@ TEST_CASE("files round trip, and the bone list beside them is found") {
   bad.positions[4][1] = std::numeric_limits<double>::quiet_NaN();
   CHECK(says(message_of([&] { write_position_npy(folder.path / "leg.npy", bad); }), "frame 2, joint 'Knee'"));
   CHECK(read_position_file(folder.path / "leg.npy", {}, 30).positions ==
-        clip.positions);  // still the old file
+        clip.positions);  // the old file is unchanged
   bad = clip;
   bad.skeleton.joints[0].name = "Hip,left";
   CHECK_THROWS_AS(write_position_csv(folder.path / "x.csv", bad), Error);

@@ -1,6 +1,5 @@
-// Against real data, where it lies beside the project (MOTIONGAN_SHARED, else ../shared): the conversion of
-// the CMU clips to exponential maps that the motion-prediction papers use, and round trips. Skips with a
-// message elsewhere.
+// Real data, if available (MOTIONGAN_SHARED, else ../shared): the CMU clips converted to the exponential maps
+// of the motion-prediction papers, and round trips. Skips with a message otherwise.
 #include <doctest/doctest.h>
 
 #include <charconv>
@@ -22,7 +21,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The data folder, or nothing where it is absent.
+/// The data folder; empty if it does not exist.
 fs::path shared_data() {
   const char* set = std::getenv("MOTIONGAN_SHARED");
   const fs::path shared = set ? fs::path(set) : fs::path(MOTIONGAN_SOURCE_DIR) / ".." / "shared";
@@ -67,7 +66,7 @@ TEST_CASE("CMU clips give the exponential maps of the motion-prediction papers")
       expected += 3;
       for (std::size_t j = 0; j < clip.skeleton.size(); ++j) {
         const Joint& joint = clip.skeleton.joints[j];
-        // Channels are z, y, x. The root's angles were multiplied in another order there.
+        // Channels are z, y, x. The texts compose the root's angles in a different order.
         const Vec3 zyx{radians(value[0]), radians(value[1]), radians(value[2])};
         const Vec3 r = j == 0 ? expmap_from_euler(EulerOrder(root_order), {zyx[0], zyx[2], zyx[1]})
                               : expmap_from_euler(EulerOrder(joint.channels), zyx);
@@ -85,7 +84,7 @@ TEST_CASE("CMU clips give the exponential maps of the motion-prediction papers")
   CHECK(worst_position < 1e-8);
 }
 
-TEST_CASE("real files survive reading, writing and the way through rotations") {
+TEST_CASE("real files survive reading, writing and conversion to rotations") {
   const fs::path data = shared_data();
   if (data.empty()) return;
   std::size_t files = 0;
@@ -117,7 +116,7 @@ TEST_CASE("the CMU clips make the paper's data set") {
   DatasetOptions options;
   options.captions = data / "cmu" / "captions.tsv";
   const Dataset set = Dataset::from_bvh(data / "cmu", options);
-  CHECK(set.train.size() + set.test.size() == 35);  // the clips that hold 8 s
+  CHECK(set.train.size() + set.test.size() == 35);  // the clips of at least 8 s
   CHECK(set.train.size() + set.test.size() + set.skipped.size() == 128);
   CHECK(set.stride == 30);
   CHECK(set.dropped_frames == 129);  // one T-pose each, two in 07_12

@@ -1,4 +1,4 @@
-// DVGAN as its user has it: generation by key, and files.
+// DVGAN models: reproducible generation and model files.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -29,7 +29,7 @@ std::filesystem::path scratch(const char* name) {
          (std::string("motiongan_dvgan_test_") + name + ".safetensors");
 }
 
-/// What load() says of the model's file after `change`.
+/// The error of load() for a model file after `change`.
 std::string refusal(const std::function<void(io::SafeTensors&)>& change) {
   const auto path = scratch("changed");
   made().save(path);
@@ -55,7 +55,7 @@ TEST_CASE("a sample is the same alone, in a batch, and across batches of 64") {
   CHECK(model.generate_poses(caption, {.count = 3, .seed = 5}) == Poses(all.begin(), all.begin() + 3));
 }
 
-TEST_CASE("seeds, samples and captions make a difference, the same key does not") {
+TEST_CASE("motion depends on seed, sample and caption, and is the same for the same ones") {
   const Dvgan model = made();
   const Poses a = model.generate_poses(caption, {.count = 2, .seed = 1});
   CHECK(model.generate_poses(caption, {.count = 2, .seed = 1}) == a);
@@ -68,14 +68,14 @@ TEST_CASE("seeds, samples and captions make a difference, the same key does not"
         made().generate_poses(caption, {})[0]);
 }
 
-TEST_CASE("captions: unknown words count as unknown, no word is an error") {
+TEST_CASE("a caption may have unknown words, but not no words") {
   const Dvgan model = made();
   CHECK(model.generate_poses("zyxwv", {}) == model.generate_poses("qqqqq", {}));
   CHECK(says(message_of([&] { model.generate("", {}); }), "has no words"));
   CHECK(says(message_of([&] { model.generate(" !? ", {}); }), "has no words"));
 }
 
-TEST_CASE("motions have the format's frames, rate and skeleton") {
+TEST_CASE("motions have the frames, rate and skeleton of the format") {
   const Dvgan model = made();
   const std::vector<motion::Motion> motions = model.generate(caption, {.count = 2});
   REQUIRE(motions.size() == 2);
@@ -88,7 +88,7 @@ TEST_CASE("motions have the format's frames, rate and skeleton") {
   CHECK(model.generate(caption, {.count = 0}).empty());
 }
 
-TEST_CASE("a file holds all that is needed: loaded, it generates the same bits") {
+TEST_CASE("a loaded model generates the same motion bit for bit") {
   for (const DvganOptions& options :
        {DvganOptions{.hidden = 16}, DvganOptions{.hidden = 8, .final_cut = false},
         DvganOptions{.hidden = 8, .taps = 5, .seed = 4}}) {
@@ -115,7 +115,7 @@ TEST_CASE("a file holds all that is needed: loaded, it generates the same bits")
 TEST_CASE("with and without final cut") {
   const Dvgan with = made({.hidden = 8, .final_cut = true}),
               without = made({.hidden = 8, .final_cut = false});
-  CHECK(with.cnn().levels() == 4);  // 16 frames made, 8 kept
+  CHECK(with.cnn().levels() == 4);  // generates 16 frames, keeps 8
   CHECK(without.cnn().levels() == 3);
   CHECK(without.cnn().cuts(context(), {}, 4).empty());
   const RandomKey key{.seed = 6};
@@ -125,14 +125,14 @@ TEST_CASE("with and without final cut") {
   }
 }
 
-TEST_CASE("the RNN generator: any number of frames, alone as in a batch, and the same after a file") {
+TEST_CASE("the RNN generator: any number of frames, the same alone, in a batch and after loading") {
   Dvgan model = made({.generator = GeneratorKind::rnn, .hidden = 12});
   CHECK_FALSE(model.options().cuts());
   const Poses all = model.generate_poses(caption, {.count = 66, .seed = 5});
   CHECK(all[65] == model.generate_poses(caption, {.count = 1, .seed = 5, .first_sample = 65})[0]);
   const Poses longer = model.generate_poses(caption, {.count = 2, .seed = 5, .frames = 150});
   REQUIRE(longer[1].size() == 150 * model.format().dof());
-  CHECK(std::equal(all[1].begin(), all[1].end(), longer[1].begin()));  // it begins as the short one
+  CHECK(std::equal(all[1].begin(), all[1].end(), longer[1].begin()));  // begins with the short one
   CHECK(model.generate(caption, {.frames = 1})[0].frames == 1);
   const auto path = scratch("rnn");
   model.save(path);
@@ -143,7 +143,7 @@ TEST_CASE("the RNN generator: any number of frames, alone as in a batch, and the
   std::filesystem::remove(path);
 }
 
-TEST_CASE("the RNN generator with final cut: a piece of what it makes without") {
+TEST_CASE("the RNN generator with final cut returns a part of the longer motion") {
   const Dvgan model = made({.generator = GeneratorKind::rnn, .hidden = 12, .final_cut = true});
   const std::size_t dof = model.format().dof(), frames = model.format().frames;
   const Poses cut = model.generate_poses(caption, {.count = 3, .seed = 2}),
@@ -157,7 +157,7 @@ TEST_CASE("the RNN generator with final cut: a piece of what it makes without") 
         frames);
 }
 
-TEST_CASE("a CNN generator asked for what only the RNN can says what to use") {
+TEST_CASE("the error for what only an RNN generator can do says what to use") {
   const Dvgan model = made();
   for (const std::string& text :
        {message_of([&] { model.rnn(); }), message_of([&] { model.generate(caption, {.frames = 20}); })}) {
@@ -168,31 +168,31 @@ TEST_CASE("a CNN generator asked for what only the RNN can says what to use") {
   CHECK(says(message_of([] { made({.generator = GeneratorKind::rnn, .hidden = 8}).cnn(); }), "RNN generator"));
 }
 
-TEST_CASE("sizes that cannot be are refused") {
+TEST_CASE("invalid sizes are refused") {
   motion::MotionFormat format = small_data().format;
   format.frames = 33;
   const std::string text = message_of([&] { Dvgan(context(), format, {.hidden = 8}); });
   CHECK(says(text, "33"));
   CHECK(says(text, "32 and 64"));
-  CHECK(says(message_of([] { made({.hidden = 0}); }), "must be positive"));
+  CHECK(says(message_of([] { made({.hidden = 0}); }), "hidden is 0, expected 1 to 65536"));
   CHECK(says(message_of([] { made({.hidden = 8, .taps = 4}); }), "taps is 4"));
 }
 
-TEST_CASE("files that are not this model are refused by name, with what is wrong") {
+TEST_CASE("files without this model are refused, naming the file and the problem") {
   CHECK(refusal([](auto&) {}) == "no error");
   CHECK(says(refusal([](auto& f) { f.metadata.clear(); }), "not a motiongan model"));
   CHECK(says(refusal([](auto& f) { f.metadata["motiongan_model"] = "ranker"; }), "\"ranker\""));
-  CHECK(says(refusal([](auto& f) { f.metadata.erase("format"); }), "metadata cannot be read"));
-  CHECK(says(refusal([](auto& f) { f.metadata["format"] = "{\"frames\": 8"; }), "metadata cannot be read"));
+  CHECK(says(refusal([](auto& f) { f.metadata.erase("format"); }), "the model has no motion format"));
+  CHECK(says(refusal([](auto& f) { f.metadata["format"] = "{\"frames\": 8"; }), "the motion format: cannot be read"));
   CHECK(says(
       refusal([](auto& f) { f.metadata["options"] = R"({"hidden": 16, "taps": 4, "final_cut": true})"; }),
-      "taps 4 is out of range"));
+      "taps is 4, expected 3 or 5"));
   CHECK(says(
       refusal([](auto& f) { f.metadata["options"] = R"({"hidden": 32, "taps": 3, "final_cut": true})"; }),
       "has shape"));
   CHECK(says(
       refusal([](auto& f) { f.metadata["options"] = R"({"hidden": -1, "taps": 3, "final_cut": true})"; }),
-      "out of range"));
+      "\"hidden\" is -1, expected a whole number of at least 0"));
   CHECK(says(refusal([](auto& f) { f.tensors.erase("decode.bias"); }), "\"decode.bias\""));
   CHECK(says(refusal([](auto& f) {
                f.tensors["decode.bias"] = io::SafeTensor::of(
@@ -202,7 +202,7 @@ TEST_CASE("files that are not this model are refused by name, with what is wrong
              "\"decode.bias\" holds"));
 }
 
-TEST_CASE("a file cut short is refused by name, wherever it was cut") {
+TEST_CASE("a file truncated at any point is refused by name") {
   const auto path = scratch("short");
   for (const double share : {0.0, 0.001, 0.1, 0.9, 0.9999}) {
     made().save(path);

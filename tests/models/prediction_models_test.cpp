@@ -1,4 +1,4 @@
-// The baselines of motion completion: parameters by name, what they go on from, files.
+// The motion-completion baselines: parameter names, rollout, model files.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -17,7 +17,7 @@ constexpr Predictor all_predictors[] = {Predictor::lstm, Predictor::seq2seq, Pre
                                         Predictor::lstm_3lr};
 
 PredictionModel small(const Context& context, Predictor predictor, std::size_t hidden = 12) {
-  return {context, dof, actions, {.predictor = predictor, .hidden = hidden}};
+  return {context, {dof, actions}, {.predictor = predictor, .hidden = hidden}};
 }
 
 std::vector<std::string> listed(PredictionModel model) {
@@ -59,7 +59,7 @@ TEST_CASE("parameters have PyTorch's names and shapes") {
         std::vector<std::string>{"gru.weight_ih_l0 [36, 5]", "gru.weight_hh_l0 [36, 12]",
                                  "gru.bias_ih_l0 [36]", "gru.bias_hh_l0 [36]", "out.weight [3, 12]",
                                  "out.bias [3]"});
-  const auto unlabelled = listed({context, dof, actions, {.hidden = 12, .labels = false}});
+  const auto unlabelled = listed({context, {dof, actions}, {.hidden = 12, .labels = false}});
   CHECK(unlabelled.front() == "gru.weight_ih_l0 [36, 3]");
   const auto erd = listed(small(context, Predictor::erd, 40));
   CHECK(erd.size() == 18);
@@ -73,18 +73,18 @@ TEST_CASE("parameters have PyTorch's names and shapes") {
   CHECK(lstm_3lr.back() == "out.bias [3]");
 }
 
-TEST_CASE("the sizes of the papers are the defaults") {
+TEST_CASE("the default sizes are those of the papers") {
   CHECK(usual_hidden(Predictor::lstm) == 256);
   CHECK(usual_hidden(Predictor::seq2seq) == 1024);
   CHECK(usual_hidden(Predictor::erd) == 1000);
   CHECK(usual_hidden(Predictor::lstm_3lr) == 1000);
   const Context context;
-  CHECK(PredictionModel(context, dof, actions, {.predictor = Predictor::lstm}).options().hidden == 256);
-  for (const Predictor p : all_predictors) CHECK(predictor_from(name_of(p)) == p);
-  CHECK(says(message_of([] { predictor_from("gru"); }), "there are lstm, seq2seq, erd and lstm_3lr"));
+  CHECK(PredictionModel(context, {dof, actions}, {.predictor = Predictor::lstm}).options().hidden == 256);
+  for (const Predictor p : all_predictors) CHECK(enum_from<Predictor>(name_of(p), "predictor") == p);
+  CHECK(says(message_of([] { enum_from<Predictor>("gru", "predictor"); }), "expected one of lstm, seq2seq, erd, lstm_3lr"));
 }
 
-TEST_CASE("what a model makes is what it goes on from") {
+TEST_CASE("a rollout equals feeding back one pose at a time") {
   const Context context;
   for (const Predictor predictor : all_predictors) {
     CAPTURE(std::string(name_of(predictor)));
@@ -100,7 +100,7 @@ TEST_CASE("what a model makes is what it goes on from") {
       seen.insert(seen.end(), frame, frame + batch * dof);
     }
     CHECK(model.predict(motion(5, 1), batch, labels, 4) != made);
-    // One prefix alone gives the same as in a batch.
+    // A prefix gives the same alone as in a batch.
     std::vector<float> first;
     for (std::size_t t = 0; t < 5; ++t)
       for (std::size_t d = 0; d < dof; ++d) first.push_back(motion(5)[t * batch * dof + d]);
@@ -110,14 +110,14 @@ TEST_CASE("what a model makes is what it goes on from") {
   }
 }
 
-TEST_CASE("seq2seq is residual: without its last layer it holds the last pose") {
+TEST_CASE("seq2seq is residual: with a zero output layer it holds the last pose") {
   const Context context;
   PredictionModel model = small(context, Predictor::seq2seq);
   for (const NamedParameter& p : named_parameters(model))
     if (p.name.starts_with("out.")) fill_with(p, 0);
   const std::vector<float> prefix = motion(6), made = model.predict(prefix, batch, labels, 3);
   for (std::size_t i = 0; i < made.size(); ++i) CHECK(made[i] == prefix[5 * batch * dof + i % (batch * dof)]);
-  // And its bias moves the pose by as much in every frame.
+  // Its bias is added to the pose in every frame.
   for (const NamedParameter& p : named_parameters(model))
     if (p.name == "out.bias") fill_with(p, 0.25F);
   const std::vector<float> moved = model.predict(prefix, batch, labels, 3);
@@ -125,7 +125,7 @@ TEST_CASE("seq2seq is residual: without its last layer it holds the last pose") 
     CHECK(moved[i] == doctest::Approx(made[i] + 0.25 * static_cast<double>(i / (batch * dof) + 1)));
 }
 
-TEST_CASE("the action is seen by those that see one") {
+TEST_CASE("only models that are given the action depend on it") {
   const Context context;
   const std::vector<std::size_t> others{0, 1};
   const auto differs = [&](const PredictionModel& model) {
@@ -133,17 +133,16 @@ TEST_CASE("the action is seen by those that see one") {
   };
   CHECK(differs(small(context, Predictor::lstm)));
   CHECK(differs(small(context, Predictor::seq2seq)));
-  CHECK_FALSE(differs({context, dof, actions, {.hidden = 12, .labels = false}}));
+  CHECK_FALSE(differs({context, {dof, actions}, {.hidden = 12, .labels = false}}));
   CHECK_FALSE(differs(small(context, Predictor::erd)));
   CHECK_FALSE(differs(small(context, Predictor::lstm_3lr)));
 }
 
-TEST_CASE("files: a model that was saved makes the same") {
+TEST_CASE("a loaded model makes the same predictions") {
   const Scratch scratch;
   const Context context;
   for (const Predictor predictor : all_predictors) {
-    PredictionModel model(context, dof, actions,
-                          {.predictor = predictor, .hidden = 12, .labels = false, .seed = 7});
+    PredictionModel model(context, {dof, actions}, {.predictor = predictor, .hidden = 12, .labels = false, .seed = 7});
     const fs::path path = scratch.path / name_of(predictor);
     model.save(path);
     const PredictionModel loaded = PredictionModel::load(context, path);
@@ -160,24 +159,24 @@ TEST_CASE("files: a model that was saved makes the same") {
     changed.write(scratch.path / "changed");
     return message_of([&] { PredictionModel::load(context, scratch.path / "changed"); });
   };
-  CHECK(says(refused("motiongan_model", "cnn_generator"), "expected a predictor"));
-  CHECK(says(refused("motiongan_model", "predictor_gru"), "no predictor called 'gru'"));
-  CHECK(says(refused("options", "{}"), "cannot be read"));
-  CHECK(says(refused("options", R"({"hidden": 0, "labels": true})"), "out of range"));
+  CHECK(says(refused("motiongan_model", "cnn_generator"), "expected one of predictor_lstm"));
+  CHECK(says(refused("motiongan_model", "predictor_gru"), "a model called \"predictor_gru\""));
+  CHECK(says(refused("options", "[]"), "cannot be read, expected a JSON object"));
+  CHECK(says(refused("options", R"({"hidden": 70000, "labels": true})"), "hidden is 70000, expected 0 to 65536"));
   CHECK(says(refused("options", R"({"hidden": 14, "labels": true})"), "encode.0.weight"));
   CHECK(says(refused("format", R"({"dof": 4, "actions": 2})"), "encode.0.weight"));
 }
 
-TEST_CASE("what cannot be is named") {
+TEST_CASE("invalid sizes and calls are refused by name") {
   const Context context;
-  CHECK(says(message_of([&] { PredictionModel(context, 0, 1, {}); }), "0 numbers a pose"));
-  CHECK(says(message_of([&] { PredictionModel(context, 3, 0, {}); }), "0 actions"));
+  CHECK(says(message_of([&] { PredictionModel(context, {0, 1}, {}); }), "dof is 0, expected 1 to 65536"));
+  CHECK(says(message_of([&] { PredictionModel(context, {3, 0}, {}); }), "actions is 0, expected 1 to 65536"));
   CHECK(says(message_of([&] { small(context, Predictor::erd, 1); }), "hidden above 1"));
   const PredictionModel model = small(context, Predictor::lstm_3lr);
-  CHECK(says(message_of([&] { model.predict(motion(2), batch, labels, 0); }), "0 frames to make"));
+  CHECK(says(message_of([&] { model.predict(motion(2), batch, labels, 0); }), "frames is 0"));
   CHECK(says(message_of([&] { model.predict(std::vector<float>(7), batch, labels, 1); }),
-             "7 numbers are no whole frames of 2 poses of 3 numbers"));
-  CHECK(says(message_of([&] { model.predict({}, batch, labels, 1); }), "0 numbers"));
+             "prefixes has 7 values, expected a multiple of 2 x 3"));
+  CHECK(says(message_of([&] { model.predict({}, batch, labels, 1); }), "prefixes has 0 values"));
   CHECK(says(message_of([&] { model.predict(motion(2), batch, std::span(labels).first(1), 1); }),
              "1 actions for 2 prefixes"));
   const std::vector<std::size_t> wrong{0, 2};

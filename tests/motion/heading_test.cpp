@@ -1,4 +1,4 @@
-// Yaw and tilt, and windows that begin at the origin and face the same way.
+// Yaw and tilt, and windows that start at the origin facing the same way.
 #include "motiongan/motion/heading.hpp"
 
 #include <doctest/doctest.h>
@@ -18,7 +18,7 @@ Quat about(std::size_t axis, double angle) { return axis_rotation(axis, angle); 
 
 }  // namespace
 
-TEST_CASE("a rotation as tilt, yaw, tilt, and back") {
+TEST_CASE("a rotation converts to tilt, yaw, tilt and back") {
   for (double yaw : {-3.0, -1.0, 0.0, 0.5, 3.1})
     for (double x : {-1.5, 0.0, 0.3})
       for (double z : {-0.7, 0.0, 2.0}) {
@@ -33,7 +33,7 @@ TEST_CASE("a rotation as tilt, yaw, tilt, and back") {
         1e-7);  // upside down
 }
 
-TEST_CASE("the yaw counts whole turns") {
+TEST_CASE("the yaw is unwrapped over whole turns") {
   Motion m = curved_walk(0, {}, 200);  // 18 radians
   const PoseLayout layout(m.skeleton, true, 0, RootRotation::heading);
   CHECK(layout.yaw_dim() == 1);
@@ -47,7 +47,7 @@ TEST_CASE("the yaw counts whole turns") {
   CHECK_THROWS_WITH_AS(PoseLayout(m.skeleton).yaw_dim(), doctest::Contains("no yaw"), Error);
 }
 
-TEST_CASE("a window is the same wherever and whichever way it was recorded") {
+TEST_CASE("a window does not depend on where and in which direction it was recorded") {
   const Vec3 there{5, 0, -3};
   const Dataset data = Dataset::from_motions({{"a", curved_walk(0, {}, 40), {"walk"}},
                                               {"b", curved_walk(2.5, there, 40), {"walk"}},
@@ -62,7 +62,7 @@ TEST_CASE("a window is the same wherever and whichever way it was recorded") {
     data.window(data.train[0], start, first);
     data.window(data.train[1], start, other);
     for (std::size_t i = 0; i < first.size(); ++i) CHECK(first[i] == doctest::Approx(other[i]).epsilon(1e-4));
-    // Back as motion it starts at the origin without yaw and does what the recording does, seen from there.
+    // As motion again, it starts at the origin with yaw 0 and repeats the recording relative to that.
     const Motion source = curved_walk(0, {}, 40), motion = data.to_motion(first);
     const Quat turn_back =
         inverse(quat_from_heading({0, heading_from_quat(source.rotation(start, 0))[1], 0}));

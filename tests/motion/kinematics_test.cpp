@@ -57,7 +57,7 @@ TEST_CASE("an arm bent at shoulder and elbow") {
   CHECK(bone_lengths(m.skeleton) == std::vector<double>{0, 2, 1});
 }
 
-TEST_CASE("a motion whose arrays do not fit is refused") {
+TEST_CASE("a motion with inconsistent arrays is rejected") {
   Motion m = arm(2);
   m.rotations.pop_back();
   CHECK_THROWS_WITH_AS(forward_kinematics(m),
@@ -70,8 +70,8 @@ TEST_CASE("a motion whose arrays do not fit is refused") {
   CHECK_THROWS_WITH_AS(forward_kinematics(m), doctest::Contains("rate is 0"), Error);
 }
 
-TEST_CASE("the joint that travels is found, and what is above it folded into it") {
-  // A resting world joint, turned and moved away, above the arm.
+TEST_CASE("the travelling joint is found, and the joints above it are folded into it") {
+  // A resting world joint, rotated and displaced, above the arm.
   Motion m = arm(3);
   m.skeleton.joints.insert(m.skeleton.joints.begin(), {"World", -1, {1, 0, 0}, six, {}});
   for (std::size_t j = 1; j < 4; ++j) m.skeleton.joints[j].parent = static_cast<int>(j) - 1;
@@ -100,9 +100,9 @@ TEST_CASE("the joint that travels is found, and what is above it folded into it"
     }
   CHECK(moving_root(folded) == 0);
   m.position(1, 0) = {5, 5, 5};
-  CHECK(moving_root(m) == 0);  // the world joint travels itself
+  CHECK(moving_root(m) == 0);  // the world joint itself travels
 
-  // A root without position channels gets them; a branch above the root would be lost.
+  // A root without position channels gets them; a second branch above it is an error.
   m.skeleton.joints[1].channels = {Channel::y_rotation};
   CHECK(fold_into_root(m, 1).skeleton.joints[0].channels == six);
   m.skeleton.joints[3].parent = 0;
@@ -110,7 +110,7 @@ TEST_CASE("the joint that travels is found, and what is above it folded into it"
   CHECK_THROWS_AS(fold_into_root(m, 9), Error);
 }
 
-TEST_CASE("a turning root that stays in place is the root") {
+TEST_CASE("a root that rotates in place is the root") {
   Motion m = arm(3);
   for (std::size_t f = 0; f < 3; ++f)
     m.rotation(f, 0) = quat_from_expmap({0, 0.5 * static_cast<double>(f), 0});

@@ -1,4 +1,4 @@
-// Channels to rotations and back, changing the rate, cutting, and T-poses at the start.
+// Channels to rotations and back, resampling, slicing, and T-poses at the start.
 #include "motiongan/motion/motion.hpp"
 
 #include <doctest/doctest.h>
@@ -39,7 +39,7 @@ Motion turning(std::size_t frames, double rate, double per_frame) {
 
 }  // namespace
 
-TEST_CASE("channels in the joint's own order; positions replace the offset's parts") {
+TEST_CASE("channels in the joint's own order; positions replace components of the offset") {
   Clip clip;
   clip.skeleton =
       two_joints({Channel::y_rotation, Channel::z_position, Channel::x_rotation}, {Channel::y_position});
@@ -61,13 +61,13 @@ TEST_CASE("channels in the joint's own order; positions replace the offset's par
   CHECK_THROWS_WITH_AS(to_motion(clip), doctest::Contains("3 values, expected 1 frames x 4 channels"), Error);
 }
 
-TEST_CASE("angles leave as continuous curves, through full turns") {
+TEST_CASE("angles are written as continuous curves through full turns") {
   const Clip clip = to_clip(turning(100, 30, 0.2), "turn");  // three turns
   for (std::size_t f = 0; f < 100; ++f)
     CHECK(clip.channels[f * 6 + 3] == doctest::Approx(degrees(0.2 * double(f))));
 }
 
-TEST_CASE("frame times as files print them") {
+TEST_CASE("frame times as printed in files") {
   CHECK(rate_from_frame_time(.0083333) == 120);
   CHECK(rate_from_frame_time(0.0333333) == 30);
   CHECK(rate_from_frame_time(0.033333) == 30);
@@ -80,7 +80,7 @@ TEST_CASE("frame times as files print them") {
   CHECK_THROWS_AS(rate_from_frame_time(0), Error);
 }
 
-TEST_CASE("resampling: the lengths, the ends, and what lies between") {
+TEST_CASE("resampling: lengths, end points and interpolation") {
   const Motion slow = turning(5, 4, 0.3);  // one second
   const Motion fast = resample(slow, 60);
   CHECK(fast.frames == 61);
@@ -98,7 +98,7 @@ TEST_CASE("resampling: the lengths, the ends, and what lies between") {
   CHECK(back.positions == slow.positions);
 
   CHECK(resample(turning(481, 120, 0.01), 12.5).frames == 51);  // 4 s
-  CHECK(resample(turning(480, 120, 0.01), 12.5).frames == 50);  // one old frame less
+  CHECK(resample(turning(480, 120, 0.01), 12.5).frames == 50);  // one source frame less
   CHECK(resample(turning(100, 30, 0.01), 112.5).frames == 372);
   CHECK(resample(turning(1, 30, 0.01), 60).frames == 1);
   CHECK(resample(turning(2, 30, 0.01), 7).frames == 1);
@@ -130,7 +130,7 @@ TEST_CASE("slices") {
   CHECK_THROWS_AS(slice(m, 2, static_cast<std::size_t>(-1)), Error);
 }
 
-TEST_CASE("a T-pose in front is found and dropped") {
+TEST_CASE("a T-pose at the start is found and dropped") {
   Clip clip;
   clip.skeleton = two_joints({Channel::x_position, Channel::y_position, Channel::z_rotation},
                              {Channel::z_rotation, Channel::x_rotation});
@@ -147,7 +147,7 @@ TEST_CASE("a T-pose in front is found and dropped") {
   CHECK(t_pose_frames(with({posed, a, b, c})) == 1);
   CHECK(t_pose_frames(with({posed, zero, a, b, c})) == 2);  // as the CMU clip 07_12 has it
   CHECK(t_pose_frames(with({a, b, c})) == 0);
-  CHECK(t_pose_frames(with({zero, zero, zero})) == 0);  // a clip of rest is no T-pose before a motion
+  CHECK(t_pose_frames(with({zero, zero, zero})) == 0);  // a clip at rest is no T-pose before a motion
   CHECK(t_pose_frames(with({zero})) == 0);
   CHECK(t_pose_frames(with({})) == 0);
   CHECK(t_pose_frames(with({zero, zero, zero, zero, zero, a, b})) == 0);  // rests, then moves

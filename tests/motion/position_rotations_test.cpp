@@ -1,5 +1,5 @@
-// Rotations from positions: known turns by hand, round trips through forward kinematics and BVH, and all that
-// positions leave open.
+// Rotations from positions: rotations known by hand, round trips through forward kinematics and BVH, and
+// what positions leave undetermined.
 #include "motiongan/motion/position_rotations.hpp"
 
 #include <doctest/doctest.h>
@@ -45,7 +45,7 @@ double mean_bone(const Skeleton& s) {
   return sum / n;
 }
 
-/// The largest distance between joints of both, in mean bones.
+/// The largest distance between corresponding joints, in mean bone lengths.
 double worst(const PositionClip& a, const Motion& b) {
   const std::vector<Vec3> positions = joint_positions(b);
   REQUIRE(positions.size() == a.positions.size());
@@ -81,7 +81,7 @@ struct Noise {
 
 }  // namespace
 
-TEST_CASE("one bone turns by the shortest rotation") {
+TEST_CASE("a single bone takes the shortest rotation") {
   const Skeleton s = skeleton_of("A\t-\nB\tA\nC\tB\n", {{0, 0, 0}, {2, 0, 0}, {1, 0, 0}});
   // B is seen along y, C along z: 90 degrees about z, then, in the turned frame, 90 degrees about -y.
   const Motion m = motion_from_positions(clip_of(s, {{5, 6, 7}, {5, 8, 7}, {5, 8, 8}}));
@@ -93,7 +93,7 @@ TEST_CASE("one bone turns by the shortest rotation") {
   CHECK(m.position(0, 1) == Vec3{2, 0, 0});
 }
 
-TEST_CASE("at half a turn the rotation of the frame before decides, and nothing is ever not a number") {
+TEST_CASE("at half a turn the previous rotation decides, and no value is NaN") {
   for (const double tiny : {0.0, 1e-9, -1e-7, 1e-5}) {
     const Vec3 seen = scale({-1, tiny, 0}, 1 / std::hypot(1.0, tiny));
     const Quat about_y{0, 0, 1, 0};
@@ -102,7 +102,7 @@ TEST_CASE("at half a turn the rotation of the frame before decides, and nothing 
     if (std::abs(tiny) < 1e-6) CHECK(angle_between(q, about_y) < 1e-5);
   }
   const Skeleton s = skeleton_of("A\t-\nB\tA\nC\tA\nD\tC\n", {{0, 0, 0}, {2, 0, 0}, {0, 0, 0}, {0, 0, 0}});
-  // Frame 0 turns about y by nearly half a turn; in frame 1 it is half a turn; in frame 2 B stands on A.
+  // Frame 0 turns about y by nearly half a turn; in frame 1 it is half a turn; in frame 2 B coincides with A.
   const Motion m = motion_from_positions(clip_of(s, {{0, 0, 0},
                                                      {-2, 0, 1e-3},
                                                      {0, 0, 0},
@@ -120,7 +120,7 @@ TEST_CASE("at half a turn the rotation of the frame before decides, and nothing 
   for (const Quat& q : m.rotations) CHECK(dot(q, q) == doctest::Approx(1));
 }
 
-TEST_CASE("a bone that is never near its rest direction turns without a jump") {
+TEST_CASE("a bone that is never near its rest direction rotates without jumps") {
   // The bone rests along x and swings around -x, where the shortest rotation from x has no steady axis.
   const Skeleton s = skeleton_of("A\t-\nB\tA\n", {{0, 0, 0}, {2, 0, 0}});
   std::vector<Vec3> positions;
@@ -135,9 +135,9 @@ TEST_CASE("a bone that is never near its rest direction turns without a jump") {
   double turn = 0;
   for (std::size_t f = 1; f < m.frames; ++f)
     turn = std::max(turn, angle_between(m.rotation(f - 1, 0), m.rotation(f, 0)));
-  CHECK(turn < 0.2);  // the bone itself turns by up to 0.12 a frame
+  CHECK(turn < 0.2);  // the bone itself rotates by up to 0.12 per frame
 
-  // Relative to a pose that is given, twist and all: that pose itself comes back.
+  // With that pose as reference, the pose itself is reproduced, including twist.
   const std::vector<Quat> reference{quat_from_expmap({0.4, 2, -1}), {}};
   Motion given;
   given.skeleton = s;
@@ -152,7 +152,7 @@ TEST_CASE("a bone that is never near its rest direction turns without a jump") {
              "has 3 rotations, expected"));
 }
 
-TEST_CASE("below a handle, a joint with a place of its own keeps it") {
+TEST_CASE("below a resting root, a joint with position channels keeps its position") {
   Skeleton s = skeleton_of("Handle\t-\nHips\tHandle\nLeft\tHips\nRight\tHips\n",
                            {{0, 0, 0}, {0, 9, 0}, {1, 0, 0}, {-1, 1, 0}});
   for (std::size_t j = 0; j < 2; ++j)
@@ -162,7 +162,7 @@ TEST_CASE("below a handle, a joint with a place of its own keeps it") {
       s, {{0, 0, 0}, {0, 10, 0}, {1, 10, 0}, {-1, 11, 0}, {1, 0, 2}, {5, 8, 0}, {5, 9, 0}, {4, 7, 0}});
   const Motion m = motion_from_positions(clip);
   CHECK(worst(clip, m) < 1e-9);
-  CHECK(m.rotation(1, 0) == Quat{});  // the way to the hips is no bone
+  CHECK(m.rotation(1, 0) == Quat{});  // root to hips is no bone
   CHECK(m.position(1, 1) == Vec3{4, 8, -2});
 }
 
@@ -181,7 +181,7 @@ TEST_CASE("several bones give the rotation exactly, or the best fit") {
     for (const DirectionPair& p : pairs)
       error = std::max(error, length(subtract(rotate(found, p.rest), p.seen)));
 
-    // With spoiled directions no rotation nearby may fit better.
+    // With perturbed directions, no nearby rotation may fit better.
     const auto misfit = [&](const Quat& r) {
       double sum = 0;
       for (const DirectionPair& p : pairs) {
@@ -203,13 +203,13 @@ TEST_CASE("several bones give the rotation exactly, or the best fit") {
   }
   CHECK(error < 1e-8);
   CHECK(spoiled < 1e-9);
-  // All on one line: the twist about it is that of the frame before.
+  // All collinear: the twist is that of the previous frame.
   const Quat before = quat_from_expmap({0.8, 0, 0});
   const std::vector<DirectionPair> line{{{1, 0, 0}, {1, 0, 0}, 1}, {{-1, 0, 0}, {-1, 0, 0}, 2}};
   CHECK(angle_between(best_rotation(line, before), before) < 1e-4);
 }
 
-TEST_CASE("forward kinematics of the rotations gives the positions back") {
+TEST_CASE("forward kinematics of the rotations reproduces the positions") {
   ProceduralOptions options;
   options.clips = procedural_actions().size();
   options.seconds = 3;
@@ -218,8 +218,8 @@ TEST_CASE("forward kinematics of the rotations gives the positions back") {
     const PositionClip clip = clip_of(l.motion);
     const Motion m = motion_from_positions(clip);
     CHECK(worst(clip, m) < 1e-6);
-    CHECK(m.skeleton == clip.skeleton);  // its channels too
-    // The hips and the chest have several bones: there the rotation itself is found.
+    CHECK(m.skeleton == clip.skeleton);  // including channels
+    // The hips and the chest have several bones, so their rotations are exact.
     for (std::size_t f = 0; f < m.frames; ++f)
       REQUIRE(angle_between(m.rotation(f, procedural::hips), l.motion.rotation(f, procedural::hips)) < 1e-6);
     for (std::size_t f = 1; f < m.frames; ++f)
@@ -228,7 +228,7 @@ TEST_CASE("forward kinematics of the rotations gives the positions back") {
   }
 }
 
-TEST_CASE("joints of zero offset turn what hangs on them") {
+TEST_CASE("joints of zero offset rotate their bones") {
   // As in the CMU files: the hips have no bone of their own, nor has the chest; both hips and the back do.
   const Skeleton s = skeleton_of(
       "Hips\t-"
@@ -288,14 +288,14 @@ TEST_CASE("wrong bone lengths: the directions are kept, the lengths are the skel
   PositionClip wrong = clip;
   wrong.positions = stretched;
   const Motion m = motion_from_positions(wrong);
-  CHECK(worst(clip, m) < 1e-6);  // the motion without the stretching
+  CHECK(worst(clip, m) < 1e-6);  // the motion before stretching
   CHECK(bone_lengths(m.skeleton) == bone_lengths(clip.skeleton));
 }
 
-TEST_CASE("a bone list makes a skeleton that BVH can hold") {
+TEST_CASE("a skeleton from a bone list can be written as BVH") {
   const LabelledMotion l = procedural_motion(3, {.seconds = 1});
   PositionClip clip = clip_of(l.motion);
-  for (Joint& j : clip.skeleton.joints) {  // what a file of positions knows
+  for (Joint& j : clip.skeleton.joints) {  // as from a position file
     j.channels.clear();
     j.end_site.reset();
   }
@@ -318,7 +318,7 @@ TEST_CASE("a bone list makes a skeleton that BVH can hold") {
   CHECK(free.joints[0].channels.size() == 6);
   CHECK(free.joints[1].channels.size() == 3);
   CHECK(free.joints[2].channels == hinge.joints[2].channels);
-  CHECK(free.joints[4].channels.empty());  // toes have no bone to turn
+  CHECK(free.joints[4].channels.empty());  // toes have no bone to rotate
 }
 
 TEST_CASE("joints in any order are sorted for BVH") {
@@ -338,7 +338,7 @@ TEST_CASE("joints in any order are sorted for BVH") {
   CHECK(depth_first(sorted).skeleton == sorted.skeleton);
 }
 
-TEST_CASE("clips that are none are refused") {
+TEST_CASE("invalid clips are rejected") {
   PositionClip clip = clip_of(skeleton_of("A\t-\nB\tA\n", {{0, 0, 0}, {1, 0, 0}}), {{0, 0, 0}, {1, 0, 0}});
   PositionClip bad = clip;
   bad.positions[1][2] = std::numeric_limits<double>::infinity();
@@ -358,7 +358,7 @@ TEST_CASE("clips that are none are refused") {
   CHECK(motion_from_positions(clip).frames == 0);
 }
 
-TEST_CASE("captured motion comes back, where there is some") {
+TEST_CASE("captured motion is reproduced, if available") {
   const char* set = std::getenv("MOTIONGAN_SHARED");
   const fs::path data = (set ? fs::path(set) : fs::path(MOTIONGAN_SOURCE_DIR) / ".." / "shared") / "data";
   if (!fs::is_directory(data)) {

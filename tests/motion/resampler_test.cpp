@@ -1,4 +1,4 @@
-// Another rate for motion in pieces, and from its end.
+// Resampling of motion in pieces, and aligned to its end.
 #include "motiongan/motion/resampler.hpp"
 
 #include <doctest/doctest.h>
@@ -10,7 +10,7 @@ using namespace motiongan;
 using namespace motiongan::motion;
 using namespace motiongan::testing;
 
-TEST_CASE("pieces of any size give the resampled whole, bit for bit, at lower and higher rates") {
+TEST_CASE("pieces of any size give the resampled whole bit for bit, at lower and higher rates") {
   const Motion whole = walk(203.0 / 30, 30, 1.3);
   REQUIRE(whole.frames > 150);
   for (const double rate : {30.0, 12.5, 60.0, 7.0, 100.0, 0.01}) {
@@ -26,7 +26,7 @@ TEST_CASE("pieces of any size give the resampled whole, bit for bit, at lower an
       CHECK(all.frames == expected.frames);
       CHECK(all.rotations == expected.rotations);
       CHECK(all.positions == expected.positions);
-      CHECK(says(message_of([&] { resampler.append(slice(whole, 0, 1)); }), "came to be resampled"));
+      CHECK(says(message_of([&] { resampler.append(slice(whole, 0, 1)); }), "frames to resample"));
     }
   }
   Resampler other(10, 25, 5);
@@ -34,7 +34,7 @@ TEST_CASE("pieces of any size give the resampled whole, bit for bit, at lower an
   CHECK(says(message_of([] { Resampler(10, 30, 0); }), "cannot resample from 30 to 0"));
 }
 
-TEST_CASE("from the end: the last frame stays, and the steps are counted back") {
+TEST_CASE("aligned to the end: the last frame is kept, and steps count backwards") {
   const Motion whole = walk(2, 30, 1.3);
   const Motion back = resample_to_end(whole, 12.5);
   CHECK(back.frames == resample(whole, 12.5).frames);
@@ -48,7 +48,7 @@ TEST_CASE("from the end: the last frame stays, and the steps are counted back") 
   CHECK(resample_to_end(slice(whole, 0, 1), 4).frames == 1);
 }
 
-TEST_CASE("one motion after the other") {
+TEST_CASE("motions are joined") {
   const Motion whole = walk(1, 30, 1.3);
   const Motion joined = join(slice(whole, 0, 9), slice(whole, 9, whole.frames - 9));
   CHECK(joined.frames == whole.frames);

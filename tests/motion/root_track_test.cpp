@@ -1,4 +1,4 @@
-// Poses that hold steps and turns: there and back, in pieces, in windows, and at the prior's place.
+// Poses with steps and turns: round trips, decoding in pieces, windows, and placement at the prior.
 #include "motiongan/motion/root_track.hpp"
 
 #include <doctest/doctest.h>
@@ -51,7 +51,7 @@ std::vector<LabelledMotion> curves() {
 
 }  // namespace
 
-TEST_CASE("steps and turns: what they are called, and what they hold") {
+TEST_CASE("steps and turns: names and values") {
   const Motion m = curved_walk(0.4, {3, 1, -2}, 100);
   const PoseLayout layout(m.skeleton, true, 0, velocity);
   CHECK(layout.name(0) == "Hips.x");
@@ -74,7 +74,7 @@ TEST_CASE("steps and turns: what they are called, and what they hold") {
   CHECK_THROWS_WITH_AS(layout.encode(m, 0), doctest::Contains("step of 0 frames"), Error);
 }
 
-TEST_CASE("encoded and decoded, a long walk is itself, from where it started") {
+TEST_CASE("a long walk survives encoding and decoding, from where it started") {
   const Motion m = curved_walk(0.4, {3, 1, -2}, 3000);  // 43 turns
   const PoseLayout layout(m.skeleton, true, 0, velocity);
   const std::vector<double> poses = layout.encode(m);
@@ -84,7 +84,7 @@ TEST_CASE("encoded and decoded, a long walk is itself, from where it started") {
   const Difference there = difference(layout.decode(poses, m.frames, m.rate, &start), m);
   CHECK(there.position < 1e-9);
   CHECK(there.angle < 1e-7);
-  // The track now stands at the last frame; a continuation from a given motion's track goes on from there.
+  // The track is now at the last frame; a continuation from a given motion's track starts there.
   const RootTrack last = layout.track_of(m, m.frames - 1);
   CHECK(std::abs(start.x - last.x) < 1e-9);
   CHECK(std::abs(start.z - last.z) < 1e-9);
@@ -96,7 +96,7 @@ TEST_CASE("encoded and decoded, a long walk is itself, from where it started") {
   CHECK(onward.angle < 1e-7);
   CHECK_THROWS_WITH_AS(layout.track_of(m, 3000), doctest::Contains("frame 3000 of a motion of 3000"), Error);
 
-  // Without a position, the turns alone.
+  // Without root position, only turns.
   const PoseLayout turning(m.skeleton, false, 0, velocity);
   CHECK(turning.dof() == 6);
   RootTrack facing{0, 0, 0.4, false};
@@ -124,7 +124,7 @@ TEST_CASE("a motion decoded in pieces is the one decoded at once, bit for bit") 
       }
       CHECK(joined.rotations == whole.rotations);
       CHECK(joined.positions == whole.positions);
-      CHECK(track.started == (form == velocity));  // the other form leaves it alone
+      CHECK(track.started == (form == velocity));  // the other representation leaves it unchanged
     }
   }
 }
@@ -135,9 +135,9 @@ TEST_CASE("differences over a stride: every stride-th pose is the pose of every 
   const std::vector<double> poses = layout.encode(m, 5);
   for (const std::size_t start : {0, 3, 17}) {
     const std::vector<double> alone = layout.encode(every(m, start, 5, 12));
-    for (std::size_t i = start < 5 ? 1 : 0; i < 12; ++i)  // the first of all, has no predecessor
+    for (std::size_t i = start < 5 ? 1 : 0; i < 12; ++i)  // the very first has no predecessor
       for (std::size_t d = 0; d < layout.dof(); ++d) {
-        if (i == 0 && (d == 1 || d == 6 || d == 8)) continue;  // alone, it has none either
+        if (i == 0 && (d == 1 || d == 6 || d == 8)) continue;  // a single frame has none either
         CHECK(std::abs(poses[(start + 5 * i) * layout.dof() + d] - alone[i * layout.dof() + d]) < 1e-12);
       }
   }
@@ -148,7 +148,7 @@ TEST_CASE("differences over a stride: every stride-th pose is the pose of every 
     for (const std::size_t d : {1, 6, 8}) CHECK(brief[f * layout.dof() + d] == 0);
 }
 
-TEST_CASE("a data set of steps: windows, statistics, and the way back to motion") {
+TEST_CASE("a data set with steps: windows, statistics, and conversion back to motion") {
   const std::vector<LabelledMotion> motions = curves();
   const Dataset data =
       Dataset::from_motions(motions, {.frames = 8, .rate = 5, .root_rotation = velocity, .train_share = 1});
@@ -174,7 +174,7 @@ TEST_CASE("a data set of steps: windows, statistics, and the way back to motion"
   }
 }
 
-TEST_CASE("the training range holds every training window, and no more than they reach") {
+TEST_CASE("the training range contains every training window, tightly") {
   for (const RootRotation form : {RootRotation::expmap, RootRotation::heading, velocity}) {
     const Dataset data =
         Dataset::from_motions(curves(), {.frames = 8, .rate = 5, .root_rotation = form, .train_share = 0.67});
@@ -196,14 +196,14 @@ TEST_CASE("the training range holds every training window, and no more than they
   }
 }
 
-TEST_CASE("a prior as a window, and back at its place") {
+TEST_CASE("a prior is encoded as a window and placed back") {
   const std::vector<LabelledMotion> motions = curves();
   for (const RootRotation form : {RootRotation::expmap, RootRotation::heading, velocity}) {
     const Dataset data =
         Dataset::from_motions(motions, {.frames = 8, .rate = 10, .root_rotation = form, .train_share = 1});
     const MotionFormat& format = data.format;
-    // As the data set has it, but for the step that leads to its first frame. (An exponential map is
-    // unwrapped from where a motion begins: it compares at a clip's start only.)
+    // As in the data set, except for the step that leads to its first frame. (An exponential map is
+    // unwrapped from the start of a motion, so it is comparable only at the start of a clip.)
     const std::size_t start = form == RootRotation::expmap ? 0 : 11;
     const Motion prior = slice(motions[1].motion, start, 8);
     const std::vector<float> poses = format.encode_window(prior);
@@ -212,7 +212,7 @@ TEST_CASE("a prior as a window, and back at its place") {
     REQUIRE(poses.size() == window.size());
     for (std::size_t i = form == velocity ? format.dof() : 0; i < poses.size(); ++i)
       CHECK(poses[i] == doctest::Approx(window[i]).epsilon(1e-4));
-    // Of any length, at any place.
+    // Of any length, anywhere.
     const Motion other = curved_walk(-2, {-20, 1, 30}, 30);
     const Motion made = format.to_motion(format.encode_window(other));
     const Motion placed = format.place(made, other);

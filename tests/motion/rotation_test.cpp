@@ -59,7 +59,7 @@ Mat3 reference(const EulerOrder& order, const Vec3& angles) {
 
 }  // namespace
 
-TEST_CASE("every Euler order goes to a matrix and back") {
+TEST_CASE("every Euler order converts to a matrix and back") {
   Numbers random;
   for (const auto& axes : all_orders()) {
     const EulerOrder order = order_of(axes);
@@ -67,7 +67,7 @@ TEST_CASE("every Euler order goes to a matrix and back") {
     for (int i = 0; i < 500; ++i) {
       Vec3 angles{random() * 7, random() * 7, random() * 7};
       if (i % 5 == 0) angles = {std::round(angles[0]) * pi / 2, std::round(angles[1]) * pi / 2, angles[2]};
-      if (i % 7 == 0) angles[1] = pi / 2 + 1e-9 * random();  // beside gimbal lock
+      if (i % 7 == 0) angles[1] = pi / 2 + 1e-9 * random();  // next to gimbal lock
       if (i % 11 == 0) angles[1] = 1e-9 * random();
       const Mat3 m = matrix_from_euler(order, angles);
       worst_reference = std::max(worst_reference, difference(m, reference(order, angles)));
@@ -79,7 +79,7 @@ TEST_CASE("every Euler order goes to a matrix and back") {
   }
 }
 
-TEST_CASE("Euler angles come back as they were where they are unique") {
+TEST_CASE("Euler angles round-trip where they are unique") {
   Numbers random;
   for (const auto& axes : all_orders()) {
     const EulerOrder order = order_of(axes);
@@ -150,7 +150,7 @@ TEST_CASE("slerp runs at constant speed along the shorter arc") {
   CHECK(angle_between(slerp(a, a, 0.3), a) < 1e-15);
 }
 
-TEST_CASE("fewer than three axes: the nearest rotation they can make") {
+TEST_CASE("fewer than three axes: the nearest rotation they can represent") {
   Numbers random;
   for (const auto& axes : all_orders()) {
     const EulerOrder order = order_of(axes);
@@ -167,7 +167,7 @@ TEST_CASE("fewer than three axes: the nearest rotation they can make") {
   }
 }
 
-TEST_CASE("gimbal lock keeps the third angle it is told and the rotation") {
+TEST_CASE("gimbal lock keeps the given third angle and the rotation") {
   for (const auto& axes : all_orders()) {
     const EulerOrder order = order_of(axes);
     if (order.count != 3 || axes[0] == axes[1] || axes[1] == axes[2]) continue;
@@ -186,7 +186,7 @@ TEST_CASE("an exponential map stays continuous through several turns") {
   const Vec3 axis = scale({0.6, -0.48, 0.64}, 1);
   Vec3 previous{};
   for (int i = 1; i <= 400; ++i) {
-    const double angle = i * 0.1;  // 6 turns; 0.1 never is a multiple of pi
+    const double angle = i * 0.1;  // 6 turns; never a multiple of pi
     const Vec3 r = unwrap_expmap(expmap_from_quat(quat_from_expmap(scale(axis, angle))), previous);
     CHECK(length(subtract(r, scale(axis, angle))) < 1e-11);
     previous = r;
@@ -196,7 +196,7 @@ TEST_CASE("an exponential map stays continuous through several turns") {
     CHECK(length(subtract(r, scale(axis, i * 0.1))) < 1e-11);
     previous = r;
   }
-  // At a whole turn the axis is the one of before; near nothing, nothing happens.
+  // At a whole turn the previous axis is kept; near zero, nothing changes.
   CHECK(length(subtract(unwrap_expmap({0, 0, 0}, {0, 6.2, 0}), {0, 2 * pi, 0})) < 1e-12);
   CHECK(length(subtract(unwrap_expmap({1e-13, 0, 0}, {0, 6.2, 0}), {0, 2 * pi, 0})) < 1e-12);
   CHECK(unwrap_expmap({0, 0, 0}, {0.1, 0, 0}) == Vec3{0, 0, 0});
@@ -220,7 +220,7 @@ TEST_CASE("Euler angles stay continuous over full turns and through the flip") {
   CHECK(unwrap_angle(radians(-179), radians(178)) == doctest::Approx(radians(181)));
 }
 
-TEST_CASE("more than three rotation channels are refused") {
+TEST_CASE("more than three rotation channels are rejected") {
   const std::vector<Channel> four(4, Channel::x_rotation);
   CHECK_THROWS_WITH_AS(EulerOrder{four}, doctest::Contains("more than three rotation channels"), Error);
 }

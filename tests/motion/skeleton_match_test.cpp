@@ -1,4 +1,4 @@
-// What is said of two skeletons that differ.
+// Differences between two skeletons, and their messages.
 #include "motiongan/motion/skeleton_match.hpp"
 
 #include <doctest/doctest.h>
@@ -35,7 +35,7 @@ TEST_CASE("bone lengths, end sites and channels may differ") {
   CHECK_NOTHROW(require_same_joints(body(), other, "the prior"));
 }
 
-TEST_CASE("joints that are missing, extra, renamed or below another parent are named") {
+TEST_CASE("joints that are missing, extra, renamed or under another parent are named") {
   Skeleton other = body();
   other.joints[0].name = "Pelvis";
   CHECK(joint_differences(body(), other) == Texts{"'Hips' is called 'Pelvis'"});  // and not its children
@@ -54,18 +54,19 @@ TEST_CASE("joints that are missing, extra, renamed or below another parent are n
   other = body();
   std::swap(other.joints[1], other.joints[2]);
   CHECK(joint_differences(body(), other) ==
-        Texts{"joint 1 is 'RightLeg', expected 'LeftLeg': another order",
-              "joint 2 is 'LeftLeg', expected 'RightLeg': another order"});
+        Texts{"joint 1 is 'RightLeg', expected 'LeftLeg': different order",
+              "joint 2 is 'LeftLeg', expected 'RightLeg': different order"});
   other = body();
   other.joints.push_back(other.joints[4]);
-  CHECK(joint_differences(body(), other) == Texts{"6 joints, expected 5: several share a name"});
+  CHECK(joint_differences(body(), other) == Texts{"6 joints, expected 5: joint names are not unique"});
 }
 
 TEST_CASE("the error lists eight differences and counts the rest") {
   Skeleton long_one = body();
   for (int i = 0; i < 11; ++i) long_one.joints.push_back({"Tail" + std::to_string(i), 0, {}, {}, {}});
   const std::string text = message_of([&] { require_same_joints(body(), long_one, "the prior walk.bvh"); });
-  CHECK(says(text, "the prior walk.bvh has another skeleton (16 joints, expected 5): 'Tail0' is extra; "));
+  CHECK(says(text,
+             "the prior walk.bvh has a different skeleton (16 joints, expected 5): 'Tail0' is extra; "));
   CHECK(says(text, "'Tail7' is extra; and 3 more. Use motion"));
   CHECK(!says(text, "Tail8"));
 }

@@ -136,5 +136,5 @@ TEST_CASE("empty streams, removed ids and priors of another size") {
   CHECK(says(message_of([&] { stream.remove(id); }), "no motion with id 0"));
   CHECK(says(message_of([&] { stream.set_sentence(99, {1}); }), "id 99"));
   CHECK(says(message_of([&] { stream.add({a}, prior(2), 3); }), "a prior of 3 frames has 14 values"));
-  CHECK(says(message_of([&] { stream.add({{{}, 1, 0}}); }), "without a word"));
+  CHECK(says(message_of([&] { stream.add({{{}, 1, 0}}); }), "a sentence is empty"));
 }

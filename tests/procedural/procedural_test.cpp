@@ -1,5 +1,5 @@
-// Built-in motion: what a viewer would notice. Feet on the ground and not sliding, knees and elbows that bend
-// the right way, no jerks, captions that are true; and that the same seed gives the same clips.
+// Built-in motion: feet on the ground that do not slide, knees and elbows that bend the right way, continuous
+// velocities, true captions, and the same clips for the same seed.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -52,7 +52,7 @@ double distance(const Vec3& p, const Vec3& a, const Vec3& b) {
 
 }  // namespace
 
-TEST_CASE("the skeleton: 22 joints, both sides alike, standing on the ground at rest") {
+TEST_CASE("the skeleton has 22 joints, is symmetric, and stands on the ground at rest") {
   const Skeleton s = procedural_skeleton();
   CHECK(s.size() == 22);
   CHECK(s.channel_count() == 69);
@@ -65,7 +65,7 @@ TEST_CASE("the skeleton: 22 joints, both sides alike, standing on the ground at 
     CHECK(right.offset == Vec3{-j.offset[0], j.offset[1], j.offset[2]});
     CHECK(right.end_site.has_value() == j.end_site.has_value());
   }
-  // The indices that the mover uses are those of the names.
+  // The joint indices match the names.
   CHECK(s.find("LeftUpLeg") == int(procedural::up_leg));
   CHECK(s.find("RightFoot") == int(procedural::foot + procedural::leg_stride));
   CHECK(s.find("Spine") == int(procedural::spine));
@@ -81,7 +81,7 @@ TEST_CASE("the skeleton: 22 joints, both sides alike, standing on the ground at 
   CHECK(end_site_positions(rest, g)[2][1] == doctest::Approx(173.5).epsilon(0.02));  // the top of the head
 }
 
-TEST_CASE("the same seed gives the same clips, whatever else is asked") {
+TEST_CASE("the same seed gives the same clips, whatever the other options") {
   const auto a = procedural_motions({.clips = 20, .seconds = 2, .seed = 9});
   const auto b = procedural_motions({.clips = 3, .seconds = 2, .seed = 9});
   const auto longer = procedural_motions({.clips = 20, .seconds = 3, .rate = 60, .seed = 9});
@@ -91,7 +91,7 @@ TEST_CASE("the same seed gives the same clips, whatever else is asked") {
     CHECK(a[i].captions == longer[i].captions);
     if (i < b.size()) CHECK(a[i].motion.rotations == b[i].motion.rotations);
     CHECK(a[i].motion.rotations != other[i].motion.rotations);
-    double worst = 0;  // 60 Hz passes through the frames of 30 Hz
+    double worst = 0;  // 60 Hz contains the frames of 30 Hz
     for (std::size_t f = 0; f < a[i].motion.frames; ++f)
       for (std::size_t j = 0; j < 22; ++j)
         worst =
@@ -99,13 +99,13 @@ TEST_CASE("the same seed gives the same clips, whatever else is asked") {
     CHECK(worst < 1e-7);
   }
   CHECK(a[0].motion.rotations != a[17].motion.rotations);  // two walks differ
-  // The generator's numbers are pinned: they must not depend on compiler or library.
+  // Fixed values: they must not depend on compiler or library.
   procedural::Dice dice(1, 0);
   CHECK(dice.next() == 0x55C55969ED403149ULL);
   CHECK(dice.next() == 0xFB85AF9C9A7E41F1ULL);
 }
 
-TEST_CASE("every action comes in turn, with ids, several captions and none shared with another action") {
+TEST_CASE("actions cycle, with ids and several captions, none shared with another action") {
   const std::vector<std::string> names = procedural_actions();
   CHECK(names.size() >= 10);
   std::map<std::string, std::string> owner;
@@ -130,7 +130,7 @@ TEST_CASE("every action comes in turn, with ids, several captions and none share
   }
 }
 
-TEST_CASE("feet stand on the ground: none below it, and one touches it unless the action leaves it") {
+TEST_CASE("no foot is below the ground, and one touches it unless the action leaves it") {
   for (const LabelledMotion& clip : clips()) {
     const GlobalPose g = forward_kinematics(clip.motion);
     double least = 1e9, most = -1e9;
@@ -173,7 +173,7 @@ TEST_CASE("feet do not slide while they touch the ground") {
   }
 }
 
-TEST_CASE("no jerks: velocities of joints and of the root change little over a short time") {
+TEST_CASE("joint and root velocities are continuous") {
   // At half the time step the change of velocity from frame to frame halves, unless the velocity jumps.
   for (std::size_t i = 0; i < 2 * procedural_actions().size(); ++i) {
     const auto change = [i](double rate) {
@@ -201,7 +201,7 @@ TEST_CASE("no jerks: velocities of joints and of the root change little over a s
   }
 }
 
-TEST_CASE("joints stay within what a body can do") {
+TEST_CASE("joints stay within anatomical limits") {
   using namespace procedural;
   EulerOrder hinge;
   hinge.axes = {0, 2, 1}, hinge.count = 3;
@@ -241,7 +241,7 @@ TEST_CASE("joints stay within what a body can do") {
   }
 }
 
-TEST_CASE("arms and legs keep out of the body and of each other") {
+TEST_CASE("arms and legs do not intersect the body or each other") {
   using namespace procedural;
   for (const LabelledMotion& clip : clips()) {
     const GlobalPose g = forward_kinematics(clip.motion);
@@ -261,7 +261,7 @@ TEST_CASE("arms and legs keep out of the body and of each other") {
   }
 }
 
-TEST_CASE("walking and running travel where the body faces, at a speed that the captions tell") {
+TEST_CASE("walking and running follow the heading, at the speed given by the captions") {
   double slow = 0, quick = 1e9, fastest_walk = 0, slowest_run = 1e9;
   const auto many = procedural_motions({.clips = 40 * procedural_actions().size(), .seconds = 4, .seed = 7});
   for (const LabelledMotion& clip : many) {
@@ -269,7 +269,7 @@ TEST_CASE("walking and running travel where the body faces, at a speed that the 
     const double speed = travel_speed(clip.motion);
     INFO(clip.id, " ", clip.captions.front(), ": ", speed, " cm/s");
     if (action == "walk" || action == "run") {
-      double ahead = 0;  // travel along the pelvis' forward direction
+      double ahead = 0;  // travel along the pelvis's forward direction
       for (std::size_t f = 1; f < clip.motion.frames; ++f)
         ahead += dot(subtract(clip.motion.position(f, 0), clip.motion.position(f - 1, 0)),
                      rotate(clip.motion.rotation(f, 0), {0, 0, 1}));
@@ -329,7 +329,7 @@ TEST_CASE("left and right in the captions are the body's left and right") {
   }
 }
 
-TEST_CASE("a clip survives its Euler channels, so BVH files hold it") {
+TEST_CASE("a clip survives conversion to Euler channels, as for BVH files") {
   for (std::size_t i = 0; i < procedural_actions().size(); ++i) {
     const Motion m = procedural_motion(i, {.seconds = 2}).motion;
     const Motion back = to_motion(to_clip(m, "x"));
@@ -340,7 +340,7 @@ TEST_CASE("a clip survives its Euler channels, so BVH files hold it") {
   }
 }
 
-TEST_CASE("lengths and rates that give no motion are refused") {
+TEST_CASE("lengths and rates that give no motion are errors") {
   CHECK_THROWS_WITH_AS(procedural_motions({.seconds = 0}), doctest::Contains("0 s at 30"), Error);
   CHECK_THROWS_WITH_AS(procedural_motions({.rate = -1}), doctest::Contains("positive"), Error);
   CHECK_THROWS_AS(procedural_motions({.seconds = std::nan("")}), Error);

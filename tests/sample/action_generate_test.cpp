@@ -52,7 +52,7 @@ TEST_CASE("schedules are parsed, and errors name the piece") {
   refused("walk:3s,", "is empty");
   refused("walk", "has no length");
   refused("walk,run:3s", "only the last piece", 5);
-  refused("walk:3s,rum:3s", "there is no class 'rum'; is 'run' meant?");
+  refused("walk:3s,rum:3s", "there is no class 'rum'; did you mean 'run'?");
   refused("walk:3s,run:x", "found the length 'x'");
   refused("walk:", "found the length ''");
   refused("walk:2.5", "found the length '2.5'");
@@ -68,9 +68,9 @@ TEST_CASE("classes change on the scheduled frame; the prior comes first") {
   const ActionGan model(context(), data().format, {.hidden = 8});
   std::vector<ActionPrior> priors;
   for (std::size_t i = 0; i < 3; ++i)
-    priors.push_back(prior_from(clip_of(data(), data().train[i]), data().format));
+    priors.push_back(data().prior(data().train[i]));
   const ActionSchedule schedule{{2, 13}, {1, 20}};
-  const std::vector<PositionClip> clips = generate(model, priors, schedule);
+  const std::vector<PositionClip> clips = model.generate(priors, schedule);
   REQUIRE(clips.size() == 3);
   const std::size_t joints = data().format.skeleton().size();
   for (std::size_t i = 0; i < 3; ++i) {
@@ -91,11 +91,11 @@ TEST_CASE("classes change on the scheduled frame; the prior comes first") {
     CHECK(std::equal(expected.begin(), expected.end(),
                      clips[i].positions.begin() + static_cast<std::ptrdiff_t>(8 * joints)));
   }
-  const auto bare = generate(model, std::span(priors).first(1), schedule, {.with_prior = false});
+  const auto bare = model.generate({priors[0]}, schedule, {.with_prior = false});
   CHECK(bare.front().frames == 33);
   CHECK(std::equal(bare.front().positions.begin(), bare.front().positions.end(),
                    clips.front().positions.begin() + static_cast<std::ptrdiff_t>(8 * joints)));
-  CHECK_THROWS_WITH_AS(generate(model, priors, {}), doctest::Contains("schedule has no frames"), Error);
+  CHECK_THROWS_WITH_AS(model.generate(priors, ActionSchedule{}), doctest::Contains("schedule has no frames"), Error);
 }
 
 TEST_CASE("a synthetic clip has the real one's prior, class and length") {
@@ -107,7 +107,7 @@ TEST_CASE("a synthetic clip has the real one's prior, class and length") {
       REQUIRE(made.size() == d.train.size());
       const std::size_t joints = d.format.skeleton().size();
       for (std::size_t i = 0; i < made.size(); ++i) {
-        const PositionClip &real = clip_of(d, d.train[i]), &fake = made[i].clip;
+        const PositionClip &real = d.clip(d.train[i]), &fake = made[i].clip;
         CHECK(fake.id == real.id);
         CHECK(fake.frames == real.frames);
         REQUIRE(fake.positions.size() == real.positions.size());

@@ -39,7 +39,7 @@ ActionGan make_model(const ActionGanOptions& options = {.hidden = 8}, bool root 
 
 ActionPrior prior(std::size_t clip, std::size_t frame = 0, bool root = true) {
   const ActionDataset& d = data(root);
-  return prior_from(clip_of(d, d.train[clip]), d.format, frame);
+  return d.prior(d.train[clip], frame);
 }
 
 std::vector<float> stepped(const ActionStream& stream, ActionStream::Id id) {
@@ -60,7 +60,7 @@ const std::vector<ActionGanOptions> kinds{
 TEST_CASE("a prior has the clip's own poses, from any frame") {
   const ActionDataset& d = data();
   const motion::ActionClip& clip = d.train.front();
-  const PositionClip positions = clip_of(d, clip);
+  const PositionClip positions = d.clip(clip);
   for (const std::size_t frame : {0, 5}) {
     const ActionPrior p = prior_from(positions, d.format, frame);
     REQUIRE(p.poses.size() == 8 * d.format.dof());
@@ -131,7 +131,7 @@ TEST_CASE("the first second is the model's and depends on noise and class") {
     CHECK(stepped(stream, a) != stepped(stream, other_class));
     CHECK((stepped(stream, a) != stepped(stream, other_sample)) == (kind.noise_dim > 0));
     const NoGrad values_only;
-    const Var made = model.make(Var::constant(Tensor::from(context(), {8, 1, data().format.dof()}, p.poses)),
+    const Var made = model.forward(Var::constant(Tensor::from(context(), {8, 1, data().format.dof()}, p.poses)),
                                 Var::constant(one_hot(context(), std::vector<std::size_t>{0}, 3)),
                                 {.seed = 5, .first_sample = 3});
     const std::vector<float> expected = made.value().to_host(), got = stepped(stream, a);
@@ -174,7 +174,7 @@ TEST_CASE("invalid priors, classes and steps are rejected") {
   CHECK_THROWS_WITH_AS(stream.add({.prior = &cut}), doctest::Contains("expected 8 frames"), Error);
   CHECK_THROWS_WITH_AS(stream.add({.prior = &p, .label = 3}), doctest::Contains("class number 3"), Error);
   const auto id = stream.add({.prior = &p});
-  CHECK_THROWS_WITH_AS(stream.set_class(id, "wlak"), doctest::Contains("is 'walk' meant?"), Error);
+  CHECK_THROWS_WITH_AS(stream.set_class(id, "wlak"), doctest::Contains("did you mean 'walk'?"), Error);
   CHECK_THROWS_WITH_AS(stream.step(9), doctest::Contains("at most 8"), Error);
   CHECK(stream.class_of(id) == "jump");
   CHECK_THROWS_AS(stream.remove(id + 1), Error);

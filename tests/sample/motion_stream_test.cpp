@@ -184,7 +184,7 @@ TEST_CASE("invalid calls are rejected and change nothing") {
   Motion prior = clips()[0].motion;
   prior.skeleton.joints[2].name = "Tail";
   const std::string joints = message_of([&] { stream.add({.text = "walk", .prior = &prior}); });
-  CHECK_MESSAGE(says(joints, "the prior has another skeleton"), joints);
+  CHECK_MESSAGE(says(joints, "the prior has a different skeleton"), joints);
   CHECK_MESSAGE(says(joints, "is called 'Tail'"), joints);
   Motion empty = slice(clips()[0].motion, 0, 0);
   CHECK(says(message_of([&] { stream.add({.text = "walk", .prior = &empty}); }), "the prior has no frames"));

@@ -1,4 +1,4 @@
-// Derivatives against central differences, to any order.
+// Checks derivatives of any order against central differences.
 #pragma once
 #include <motiongan/autograd/grad.hpp>
 #include <random>
@@ -17,7 +17,7 @@ inline std::mt19937_64& generator() {
   return g;
 }
 
-/// Normal numbers; none nearer to zero than `gap`, for functions with a kink there.
+/// Normally distributed values, at least `gap` away from `shift`, for functions with a kink there.
 inline Input randn(Shape shape, double gap = 0, double shift = 0) {
   std::normal_distribution<double> normal;
   std::vector<double> values(element_count(shape));
@@ -34,8 +34,8 @@ inline double dot(const std::vector<double>& a, const std::vector<double>& b) {
   return s;
 }
 
-/// Worst relative error of d<u, f(x)>/dx in a random direction, over all inputs and all orders up to `order`:
-/// the recursion differentiates the gradient itself.
+/// The largest relative error of the derivative of <u, f(x)> in a random direction, over all inputs and all
+/// orders up to `order`. Higher orders are checked by recursion on the gradient.
 inline double check_grads(const Context& context, const Function& f, const std::vector<Input>& at, int order,
                           double step = 1e-4) {
   const auto leaves = [&](const std::vector<Input>& inputs) {
@@ -55,8 +55,7 @@ inline double check_grads(const Context& context, const Function& f, const std::
       for (std::size_t i = 0; i < there[k].values.size(); ++i) there[k].values[i] += h * direction.values[i];
       return dot(u.values, f(leaves(there)).value().to_host<double>());
     };
-    // Richardson's extrapolation of two central differences: the error falls with the fourth power of the
-    // step.
+    // Richardson extrapolation of two central differences: a fourth-order error.
     const double wide = (moved(step) - moved(-step)) / (2 * step),
                  narrow = (moved(step / 2) - moved(-step / 2)) / step;
     const double numeric = (4 * narrow - wide) / 3,
@@ -76,7 +75,7 @@ inline double check_grads(const Context& context, const Function& f, const std::
   return worst;
 }
 
-/// A double-precision context shared by the tests of one program.
+/// A double-precision context shared by the tests of a program.
 inline const Context& double_context() {
   static const Context context({.precision = Precision::f64});
   return context;

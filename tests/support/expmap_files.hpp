@@ -1,4 +1,4 @@
-// Small collections of exponential-map text in the folders of Human3.6M and CMU, made up.
+// Small synthetic collections of exponential-map text, in the folder layouts of Human3.6M and CMU.
 #pragma once
 #include <cmath>
 #include <cstdio>
@@ -9,7 +9,7 @@
 
 namespace motiongan::testing {
 
-/// A folder that is removed with all it holds.
+/// A temporary folder, removed with its contents.
 class ExpmapFolder {
  public:
   ExpmapFolder() {
@@ -36,7 +36,8 @@ class ExpmapFolder {
   std::filesystem::path path_;
 };
 
-/// The number in a column of a made-up file: slow swings, each column its own; column 8 never changes.
+/// The value in a column of a synthetic file: a slow oscillation, different for each column; column 8 is
+/// constant.
 inline double swing(std::size_t frame, std::size_t column, double phase) {
   if (column == 8) return 0.25;
   return 0.4 * std::sin(0.03 * static_cast<double>(frame) * (1 + 0.2 * static_cast<double>(column)) + phase);
@@ -53,7 +54,7 @@ inline std::string swings(std::size_t frames, double phase, std::size_t columns 
   return out;
 }
 
-/// Two actions of two training subjects and S5.
+/// Two actions, with training subjects S1 and S11 and test subject S5.
 inline void write_small_h36m(const std::filesystem::path& folder) {
   double phase = 0;
   for (const char* file : {"S1/walking_1", "S1/walking_2", "S1/eating_1", "S1/eating_2", "S11/walking_1",
@@ -62,7 +63,7 @@ inline void write_small_h36m(const std::filesystem::path& folder) {
                            swings(file[1] == '5' ? 350 : 200, phase += 0.3));
 }
 
-/// Two actions, one of which has nothing to train on.
+/// Two actions, one of them without training files.
 inline void write_small_cmu(const std::filesystem::path& folder) {
   double phase = 0;
   for (const char* file : {"train/walking/walking_1", "train/walking/walking_2", "test/walking/walking_1",

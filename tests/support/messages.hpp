@@ -1,11 +1,11 @@
-// What errors say.
+// Error messages in tests.
 #pragma once
 #include <motiongan/core/error.hpp>
 #include <string>
 
 namespace motiongan::testing {
 
-/// What an action's Error says.
+/// The message of the Error that `action` throws; "no error" if it throws none.
 template <class Action>
 std::string message_of(const Action& action) {
   try {
@@ -16,6 +16,7 @@ std::string message_of(const Action& action) {
   return "no error";
 }
 
+/// Whether `text` contains `part`.
 inline bool says(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }

@@ -1,4 +1,4 @@
-// A small data set of two classes of procedural motion for the models of the second paper.
+// A small data set of procedural motion of two classes, for the action models.
 #pragma once
 #include <motiongan/data/action_dataset.hpp>
 #include <motiongan/procedural/procedural.hpp>
@@ -7,7 +7,7 @@
 
 namespace motiongan::testing {
 
-/// T = 6 at 10 Hz: 10 clips of about four seconds, "stand" and "walk" by turns.
+/// T = 6 at 10 Hz: 10 clips of about four seconds, alternating "stand" and "walk".
 inline const motion::ActionDataset& small_actions() {
   static const motion::ActionDataset data = [] {
     std::vector<motion::LabelledMotion> clips;
@@ -22,7 +22,7 @@ inline const motion::ActionDataset& small_actions() {
   return data;
 }
 
-/// Parameters one after the other, to compare two models bit for bit.
+/// The values of all parameters, to compare two models bit for bit.
 template <class Model>
 std::vector<std::vector<float>> values_in(Model& model) {
   std::vector<std::vector<float>> all;

@@ -1,4 +1,4 @@
-// A small data set of procedural motion, and models of a few weights for it.
+// A small data set of procedural motion.
 #pragma once
 #include <motiongan/models/dvgan.hpp>
 #include <motiongan/data/dataset.hpp>
@@ -20,7 +20,7 @@ inline const motion::Dataset& small_data(std::size_t frames = 8) {
   return frames == 8 ? eight : sixteen;
 }
 
-/// Parameters one after the other, to compare two models bit for bit.
+/// The values of all parameters, to compare two models bit for bit.
 template <class Model>
 std::vector<std::vector<float>> all_values(Model& model) {
   std::vector<std::vector<float>> all;

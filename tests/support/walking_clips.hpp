@@ -9,7 +9,7 @@
 
 namespace motiongan::motion {
 
-/// Walks along x at `speed` units a second from (start, 1, 5), bobbing; the arm swings about x.
+/// A walk along x at `speed` units per second from (start, 1, 5) with a bobbing root; the arm swings about x.
 inline Motion walk(double seconds, double rate, double speed, double start = 0) {
   Motion m;
   m.skeleton.joints = {
@@ -32,8 +32,7 @@ inline Motion walk(double seconds, double rate, double speed, double start = 0) 
   return m;
 }
 
-/// Someone who walks along a curve at 10 frames a second and leans forward, recorded at any place and heading
-/// of the room.
+/// A walk along a curve at 10 Hz, leaning forward, starting at any place and heading.
 inline Motion curved_walk(double heading, const Vec3& place, std::size_t frames) {
   Motion m;
   m.skeleton.joints = {{"Hips", -1, {}, {}, {}}, {"Spine", 0, {0, 1, 0}, {}, {}}};
@@ -64,7 +63,7 @@ inline DatasetOptions eight_at(double rate) {
   DatasetOptions o;
   o.frames = 8;
   o.rate = rate;
-  o.root_rotation = RootRotation::expmap;  // heading_test.cpp has the other
+  o.root_rotation = RootRotation::expmap;  // RootRotation::heading is tested in heading_test.cpp
   return o;
 }
 

@@ -1,4 +1,4 @@
-// Checkpoints: a resumed run equals an unbroken one bit for bit, and a bad file changes nothing.
+// Checkpoints: a resumed run equals an uninterrupted one bit for bit; a bad file changes nothing.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -16,7 +16,7 @@ namespace {
 
 const DvganTrainOptions small_options{.iterations = 6, .critic_steps = 2, .batch = 3};
 
-/// A folder that goes with its test.
+/// A temporary folder, removed at the end of the test.
 struct Scratch {
   fs::path path = fs::temp_directory_path() / "motiongan_checkpoint_test";
   Scratch() {
@@ -52,7 +52,7 @@ struct Run {
   }
 };
 
-/// What load_checkpoint says of a checkpoint after `change`; the trainer must be as it was.
+/// The error of load_checkpoint() for a checkpoint after `change`; the trainer must be unchanged.
 std::string refusal(const std::function<void(io::SafeTensors&)>& change) {
   const Scratch scratch;
   const fs::path path = scratch.path / "checkpoint.safetensors";
@@ -74,7 +74,7 @@ std::string refusal(const std::function<void(io::SafeTensors&)>& change) {
 
 }  // namespace
 
-TEST_CASE("a run that is stopped and resumed equals an unbroken one, wherever it was stopped") {
+TEST_CASE("a run that is stopped at any iteration and resumed equals an uninterrupted one") {
   const Scratch scratch;
   const fs::path path = scratch.path / "checkpoint.safetensors";
   Run unbroken;
@@ -94,7 +94,7 @@ TEST_CASE("a run that is stopped and resumed equals an unbroken one, wherever it
   CHECK(elsewhere.state() != expected);
 }
 
-TEST_CASE("the recurrent networks resume as well, and not as the others") {
+TEST_CASE("the recurrent networks resume as well, but not from another model's checkpoint") {
   const Scratch scratch;
   const fs::path path = scratch.path / "checkpoint.safetensors";
   DvganTrainOptions options = small_options;
@@ -108,11 +108,11 @@ TEST_CASE("the recurrent networks resume as well, and not as the others") {
   second.iterate(4);
   CHECK(second.state() == unbroken.state());
   Run other_critic(small_options, 8, 8, GeneratorKind::rnn), other_generator(options);
-  CHECK(says(message_of([&] { load_checkpoint(other_critic.trainer, path); }), "critic = 1"));
+  CHECK(says(message_of([&] { load_checkpoint(other_critic.trainer, path); }), "critic = \"rnn\""));
   CHECK(says(message_of([&] { load_checkpoint(other_generator.trainer, path); }), "another model"));
 }
 
-TEST_CASE("a checkpoint from before an option existed counts as its default") {
+TEST_CASE("an option missing from a checkpoint has its default") {
   const auto drop = [](const std::string& key) {
     return refusal([&](io::SafeTensors& file) {
       auto options = nlohmann::json::parse(file.metadata.at("training"));
@@ -121,10 +121,10 @@ TEST_CASE("a checkpoint from before an option existed counts as its default") {
     });
   };
   CHECK(drop("diff_input") == "no error");
-  CHECK(says(drop("batch"), "batch = 64, now 3"));
+  CHECK(says(drop("batch"), "batch = 64, now it is 3"));
 }
 
-TEST_CASE("saving changes nothing, and saves the same bytes again") {
+TEST_CASE("saving changes nothing, and saving a loaded run writes the same contents") {
   const Scratch scratch;
   Run run;
   run.iterate(2);
@@ -144,7 +144,7 @@ TEST_CASE("saving changes nothing, and saves the same bytes again") {
   CHECK(a.metadata.at("adam.critic.steps") == "4");
 }
 
-TEST_CASE("a checkpoint generates as its model does") {
+TEST_CASE("a model loaded from a checkpoint generates the same motion") {
   const Scratch scratch;
   Run run;
   run.iterate(2);
@@ -154,7 +154,7 @@ TEST_CASE("a checkpoint generates as its model does") {
   CHECK(loaded.generate_poses("walk", three) == run.model.generate_poses("walk", three));
 }
 
-TEST_CASE("train() stopped and resumed: files, log and parameters of an unbroken run") {
+TEST_CASE("train() stopped and resumed gives the files, log and parameters of an uninterrupted run") {
   const Scratch scratch;
   const auto run_once = [](const fs::path& folder, bool resume, std::size_t stop_after) {
     const Context context;
@@ -177,12 +177,12 @@ TEST_CASE("train() stopped and resumed: files, log and parameters of an unbroken
     CHECK(io::SafeTensors::read(scratch.path / "parts" / name).tensors ==
           io::SafeTensors::read(scratch.path / "whole" / name).tensors);
   }
-  // The log has each iteration once, with the same losses.
+  // The log contains each iteration once, with the same losses.
   const auto rows = [](const fs::path& path) {
     std::vector<std::string> losses;
     std::ifstream log(path);
     for (std::string line; std::getline(log, line);) {
-      std::size_t at = 0;  // behind iteration, seconds, iterations_per_second
+      std::size_t at = 0;  // after iteration, seconds, iterations_per_second
       const std::string iteration = line.substr(0, line.find(','));
       for (int comma = 0; comma < 3; ++comma) at = line.find(',', at) + 1;
       losses.push_back(iteration + "," + line.substr(at));
@@ -192,7 +192,7 @@ TEST_CASE("train() stopped and resumed: files, log and parameters of an unbroken
   CHECK(rows(scratch.path / "whole" / "log.csv").size() == 7);
   CHECK(rows(scratch.path / "parts" / "log.csv") == rows(scratch.path / "whole" / "log.csv"));
 
-  // Killed before its first checkpoint: only the log is there. The same call begins anew and keeps it aside.
+  // A run killed before its first checkpoint leaves only a log. The same call starts again and renames it.
   fs::create_directories(scratch.path / "killed");
   std::ofstream(scratch.path / "killed" / "log.csv") << "iteration,seconds\n1,0.5\n";
   CHECK(run_once(scratch.path / "killed", false, 1000).iterations == 6);
@@ -203,7 +203,7 @@ TEST_CASE("train() stopped and resumed: files, log and parameters of an unbroken
   CHECK(says(message_of([&] { run_once(scratch.path / "new", true, 1); }), "no such file"));
 }
 
-TEST_CASE("other options or data than at the start are refused by name") {
+TEST_CASE("options or data that differ from the first start are refused by name") {
   const Scratch scratch;
   const fs::path path = scratch.path / "checkpoint.safetensors";
   Run run;
@@ -216,30 +216,30 @@ TEST_CASE("other options or data than at the start are refused by name") {
     return message_of([&] { load_checkpoint(other.trainer, path); });
   };
   CHECK(refused([](auto&) {}) == "no error");
-  CHECK(refused([](auto& o) { o.iterations = 100; }) == "no error");  // a longer run is welcome
-  CHECK(says(refused([](auto& o) { o.critic_steps = 5; }), "started with critic_steps = 2, now 5 is asked"));
-  CHECK(says(refused([](auto& o) { o.batch = 4; }), "batch = 3, now 4"));
+  CHECK(refused([](auto& o) { o.iterations = 100; }) == "no error");  // iterations may change
+  CHECK(says(refused([](auto& o) { o.critic_steps = 5; }), "started with critic_steps = 2, now it is 5"));
+  CHECK(says(refused([](auto& o) { o.batch = 4; }), "batch = 3, now it is 4"));
   CHECK(says(refused([](auto& o) { o.lambda_gp = 1; }), "lambda_gp = 10"));
   CHECK(says(refused([](auto& o) { o.adam.learning_rate = 1; }), "learning_rate"));
   CHECK(says(refused([](auto& o) { o.adam.beta1 = 0; }), "beta1"));
   CHECK(says(refused([](auto& o) { o.adam.beta2 = 0; }), "beta2"));
   CHECK(says(refused([](auto& o) { o.adam.epsilon = 1; }), "epsilon"));
-  CHECK(says(refused([](auto& o) { o.input_shift = false; }), "input_shift = true, now false"));
+  CHECK(says(refused([](auto& o) { o.input_shift = false; }), "input_shift = true, now it is false"));
   CHECK(says(refused([](auto& o) { o.critic.validation = Validation::final; }), "validation"));
   CHECK(says(refused([](auto& o) { o.critic.level_weights = LevelWeights::softmax; }), "level_weights"));
-  CHECK(says(refused([](auto& o) { o.seed = 9; }), "seed = 1, now 9"));
+  CHECK(says(refused([](auto& o) { o.seed = 9; }), "seed = 1, now it is 9"));
   Run longer(small_options, 16), wider(small_options, 8, 16);
   CHECK(says(message_of([&] { load_checkpoint(longer.trainer, path); }), "\"format\" differs"));
-  CHECK(says(message_of([&] { load_checkpoint(wider.trainer, path); }), "\"options\" differs"));
+  CHECK(says(message_of([&] { load_checkpoint(wider.trainer, path); }), "the run was started with hidden ="));
 }
 
 TEST_CASE("a damaged checkpoint is refused by name and changes nothing") {
   CHECK(refusal([](auto&) {}) == "no error");
-  CHECK(says(refusal([](auto& f) { f.metadata.clear(); }), "not a checkpoint"));
+  CHECK(says(refusal([](auto& f) { f.metadata.clear(); }), "not a motiongan model"));
   CHECK(says(refusal([](auto& f) { f.metadata["iteration"] = "2.5"; }), "\"iteration\" is \"2.5\""));
   CHECK(says(refusal([](auto& f) { f.metadata["adam.critic.steps"] = ""; }), "adam.critic.steps"));
   CHECK(says(refusal([](auto& f) { f.metadata["training"] = "[1, 2"; }), "cannot be read"));
-  // The last tensors that are read: what stands before them is whole.
+  // These tensors are read last; those before them are valid.
   CHECK(says(refusal([](auto& f) { f.tensors.erase("adam.critic.square"); }), "\"adam.critic.square\""));
   CHECK(says(refusal([](auto& f) { f.tensors.erase("critic.level_weight"); }), "\"critic.level_weight\""));
   CHECK(says(refusal([](auto& f) { f.tensors["adam.critic.mean"].shape.push_back(1); }), "has shape"));
@@ -251,7 +251,7 @@ TEST_CASE("a damaged checkpoint is refused by name and changes nothing") {
              "holds inf"));
 }
 
-TEST_CASE("a checkpoint cut short is refused, and the file is left alone") {
+TEST_CASE("a truncated checkpoint is refused and left unchanged") {
   const Scratch scratch;
   const fs::path path = scratch.path / "checkpoint.safetensors";
   Run run;

@@ -1,10 +1,9 @@
-// Training the baselines of motion completion: what they learn, what they are trained on, resuming bit for
-// bit.
+// Training of the motion-completion baselines: convergence, batches, resuming bit for bit.
 #include <doctest/doctest.h>
 
 #include <filesystem>
 #include <fstream>
-#include <motiongan/train/train_prediction.hpp>
+#include <motiongan/train/train.hpp>
 
 #include "../support/small_actions.hpp"
 
@@ -29,10 +28,10 @@ std::vector<float> waves(std::size_t frames, double rate) {
   return poses;
 }
 
-/// Two actions, slow and fast waves.
+/// Two actions: slow and fast waves.
 PredictionData small_data() { return {dof, {waves(60, 0.3), waves(47, 0.5), waves(80, 0.3)}, {0, 1, 0}, 2}; }
 
-/// Learning rates for models as small as these.
+/// Options with learning rates for such small models.
 PredictionTrainOptions small_options(std::size_t iterations) {
   PredictionTrainOptions options{.iterations = iterations, .batch = 4, .prefix = 10, .future = 6};
   options.sgd.learning_rate = 0.1;
@@ -41,7 +40,7 @@ PredictionTrainOptions small_options(std::size_t iterations) {
   return options;
 }
 
-/// One for all, so that kernels are compiled once.
+/// Shared by the tests, so that kernels are compiled once.
 const Context& shared_context() {
   static const Context context;
   return context;
@@ -52,7 +51,7 @@ struct Run {
   PredictionModel model;
   PredictionTrainer trainer;
   explicit Run(Predictor predictor, const PredictionTrainOptions& options = small_options(6))
-      : model(context, dof, 2, {.predictor = predictor, .hidden = 40}),
+      : model(context, {dof, 2}, {.predictor = predictor, .hidden = 40}),
         trainer(model, small_data(), options) {}
 };
 
@@ -74,19 +73,19 @@ struct Scratch {
 
 }  // namespace
 
-TEST_CASE("on waves every model comes far below holding the last pose") {
+TEST_CASE("on sine waves every model is far better than zero velocity") {
   const Context& context = shared_context();
   const PredictionData data = small_data();
   constexpr std::size_t prefix = 10, future = 6;
   for (const Predictor predictor : all_predictors) {
     CAPTURE(std::string(name_of(predictor)));
-    const bool narrow = predictor == Predictor::erd;  // a tenth of its width is all that passes
-    PredictionModel model(context, dof, 2, {.predictor = predictor, .hidden = narrow ? 80U : 40U});
+    const bool narrow = predictor == Predictor::erd;  // its bottleneck is a tenth of its width
+    PredictionModel model(context, {dof, 2}, {.predictor = predictor, .hidden = narrow ? 80U : 40U});
     PredictionTrainOptions options = small_options(predictor == Predictor::seq2seq ? 400 : 300);
     options.batch = 8;
     CHECK(train(model, data, options).iterations == options.iterations);
     double error = 0, held = 0;
-    for (std::size_t at = 0; at < 40; at += 5) {  // of the last sequence, drawn from in training as well
+    for (std::size_t at = 0; at < 40; at += 5) {  // windows of a training sequence
       const std::span<const float> sequence = data.sequences[2];
       const std::vector<std::size_t> action{0};
       const auto made = model.predict(sequence.subspan(at * dof, prefix * dof), 1, action, future);
@@ -102,7 +101,7 @@ TEST_CASE("on waves every model comes far below holding the last pose") {
   }
 }
 
-TEST_CASE("a resumed run equals an unbroken one bit for bit") {
+TEST_CASE("a resumed run equals an uninterrupted one bit for bit") {
   const Scratch scratch;
   const fs::path path = scratch.path / "c.safetensors";
   for (const Predictor predictor : all_predictors) {
@@ -131,8 +130,8 @@ TEST_CASE("a resumed run equals an unbroken one bit for bit") {
 TEST_CASE("a whole run: files, log, resuming with more iterations") {
   const Scratch scratch;
   const Context& context = shared_context();
-  PredictionModel model(context, dof, 2, {.hidden = 12}), same(context, dof, 2, {.hidden = 12}),
-      again(context, dof, 2, {.hidden = 12});
+  PredictionModel model(context, {dof, 2}, {.hidden = 12}), same(context, {dof, 2}, {.hidden = 12}),
+      again(context, {dof, 2}, {.hidden = 12});
   const RunFiles files{scratch.path / "run"};
   train(model, small_data(), small_options(3), {.save_dir = files.folder});
   train(same, small_data(), small_options(5), {.save_dir = files.folder, .resume = true});
@@ -146,7 +145,7 @@ TEST_CASE("a whole run: files, log, resuming with more iterations") {
   CHECK(text == "sequence\taction\tframes\n0\t0\t60\n1\t1\t47\n2\t0\t80\n");
 }
 
-TEST_CASE("the noise on the input grows, and only models of one step ahead see it") {
+TEST_CASE("the input noise follows its schedule and applies only to one-step-ahead models") {
   const Run run(Predictor::erd);
   CHECK(run.trainer.noise_at(1) == 0);
   CHECK(run.trainer.noise_at(2) == 0.01);
@@ -154,7 +153,7 @@ TEST_CASE("the noise on the input grows, and only models of one step ahead see i
   CHECK(run.trainer.noise_at(1'000'000) == 0.05);
   const PredictionTrainOptions defaults;
   CHECK(defaults.noise.front().iteration == 250);
-  CHECK(defaults.noise.back().deviation == 0.7);
+  CHECK(defaults.noise.back().value == 0.7);
   for (const Predictor predictor : all_predictors) {
     CAPTURE(std::string(name_of(predictor)));
     PredictionTrainOptions loud = small_options(1);
@@ -166,7 +165,7 @@ TEST_CASE("the noise on the input grows, and only models of one step ahead see i
   }
 }
 
-TEST_CASE("batches: windows of one sequence with its action; short sequences are left out") {
+TEST_CASE("batches contain windows of one sequence with its action; short sequences are left out") {
   const Context& context = shared_context();
   PredictionData data = small_data();
   data.sequences.push_back(waves(15, 0.7));  // one frame too short
@@ -182,7 +181,7 @@ TEST_CASE("batches: windows of one sequence with its action; short sequences are
     const bool is_fast = actions[2 * b + 1] == 1;
     fast += is_fast;
     CHECK(actions[2 * b] + actions[2 * b + 1] == 1);
-    // Waves of one rate: x[t+1] + x[t-1] = 2 cos(rate) x[t].
+    // A sine wave satisfies x[t+1] + x[t-1] = 2 cos(rate) x[t].
     const double factor = 2 * std::cos(is_fast ? 0.5 : 0.3);
     for (std::size_t t = 1; t + 1 < 16; ++t) {
       const auto x = [&](std::size_t frame) { return windows[(frame * 30 + b) * dof]; };
@@ -193,9 +192,9 @@ TEST_CASE("batches: windows of one sequence with its action; short sequences are
   CHECK(fast < 20);
 }
 
-TEST_CASE("data and options that cannot be are named") {
+TEST_CASE("invalid data and options are refused by name") {
   const Context& context = shared_context();
-  PredictionModel model(context, dof, 2, {.hidden = 12});
+  PredictionModel model(context, {dof, 2}, {.hidden = 12});
   const auto refused = [&](const PredictionData& data, const PredictionTrainOptions& options) {
     return message_of([&] { PredictionTrainer(model, data, options); });
   };
@@ -204,17 +203,17 @@ TEST_CASE("data and options that cannot be are named") {
     change(options);
     return options;
   };
-  CHECK(says(refused(small_data(), with([](auto& o) { o.batch = 0; })), "must be positive"));
+  CHECK(says(refused(small_data(), with([](auto& o) { o.batch = 0; })), "batch is 0, expected at least 1"));
   CHECK(says(refused(small_data(), with([](auto& o) { o.prefix = 75; })),
              "no sequence has 81 frames (the longest has 80)"));
-  CHECK(says(refused(small_data(), with([](auto& o) { o.iterations = 1U << 24U; })), "counter"));
-  CHECK(says(refused(small_data(), with([](auto& o) { o.adam.learning_rate = 0; })), "must be above 0"));
-  CHECK(says(refused(small_data(), with([](auto& o) { o.sgd.learning_rate = -1; })), "Sgd: learning rate"));
+  CHECK(says(refused(small_data(), with([](auto& o) { o.iterations = 1U << 24U; })), "random numbers count 2^24 steps"));
+  CHECK(says(refused(small_data(), with([](auto& o) { o.adam.learning_rate = 0; })), "learning_rate is 0, expected above 0"));
+  CHECK(says(refused(small_data(), with([](auto& o) { o.sgd.learning_rate = -1; })), "sgd_learning_rate is -1, expected above 0"));
   CHECK(says(refused(small_data(), with([](auto& o) {
                        o.noise = {{5, 0.1}, {5, 0.2}};
                      })),
              "noise stage 2 (from iteration 5 on"));
-  CHECK(says(refused(small_data(), with([](auto& o) { o.noise = {{5, -0.1}}; })), "not be below 0"));
+  CHECK(says(refused(small_data(), with([](auto& o) { o.noise = {{5, -0.1}}; })), "deviations be at least 0"));
   const auto data = [](auto change) {
     PredictionData changed = small_data();
     change(changed);
@@ -224,9 +223,9 @@ TEST_CASE("data and options that cannot be are named") {
   CHECK(says(refused(data([](auto& d) { d.actions[1] = 2; }), options), "sequence 1 has action 2"));
   CHECK(says(refused(data([](auto& d) { d.actions.pop_back(); }), options), "3 sequences with 2 actions"));
   CHECK(says(refused(data([](auto& d) { d.sequences[2].pop_back(); }), options), "sequence 2 has 239"));
-  CHECK(says(refused(data([](auto& d) { d.sequences[0][7] = NAN; }), options), "sequence 0 holds"));
+  CHECK(says(refused(data([](auto& d) { d.sequences[0][7] = NAN; }), options), "sequence 0 contains"));
   CHECK(says(refused(data([](auto& d) { d.action_count = 3; }), options), "do not fit the model"));
-  CHECK(says(refused({}, options), "0 numbers a pose"));
+  CHECK(says(refused({}, options), "dof is 0"));
   Run run(Predictor::lstm);
   CHECK(says(message_of([&] { static_cast<void>(run.trainer.losses()); }), "no iteration"));
 }

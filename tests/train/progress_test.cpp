@@ -50,14 +50,14 @@ std::string read(const std::filesystem::path& path) {
 
 }  // namespace
 
-TEST_CASE("a progress line says how far, how fast and how long") {
+TEST_CASE("a progress line shows progress, rate and remaining time") {
   const std::vector<NamedValue> values{{"W", 34.2}, {"penalty", 0.31}};
   const std::string line = detail::progress_line("iteration", 5000, 20000, 3.2, values, 120);
   CHECK(line.size() <= 120);
   CHECK(line.rfind("iteration 5000/20000 [=======>", 0) == 0);
   CHECK(line.find("3.2 it/s  ETA 01:18:08") != std::string::npos);
   CHECK(line.find("  W 34.2  penalty 0.31") != std::string::npos);
-  // Narrower: the bar goes first, then values from the end.
+  // Narrower: the bar is dropped first, then values from the end.
   const std::string narrow = detail::progress_line("iteration", 5000, 20000, 3.2, values, 54);
   CHECK(narrow.find('[') == std::string::npos);
   CHECK(narrow.find("W 34.2") != std::string::npos);
@@ -70,7 +70,7 @@ TEST_CASE("a progress line says how far, how fast and how long") {
   CHECK(detail::clock_text(90061) == "1d 01:01:01");
 }
 
-TEST_CASE("on a terminal the line is drawn in place, and not too often") {
+TEST_CASE("on a terminal the line is redrawn in place, at most once per interval") {
   double time = 100;
   const std::string text = printed([&](std::FILE* file) {
     ProgressBar bar(1000, {.out = file, .terminal = true, .width = 100, .now = [&] { return time; }});
@@ -91,7 +91,7 @@ TEST_CASE("on a terminal the line is drawn in place, and not too often") {
   CHECK(text.find("iteration 1000/1000") != std::string::npos);
 }
 
-TEST_CASE("into a file go plain lines at intervals") {
+TEST_CASE("a file gets plain lines at intervals") {
   double time = 0;
   const std::string text = printed([&](std::FILE* file) {
     ProgressBar bar(100, {.out = file, .plain_interval = 10, .now = [&] { return time; }});
@@ -107,10 +107,10 @@ TEST_CASE("into a file go plain lines at intervals") {
   CHECK(times(text, "\n") == 7);  // at 41, 51, ... 91, and the end
   CHECK(text.find("iteration 41/100") != std::string::npos);
   CHECK(text.find("iteration 100/100") != std::string::npos);
-  CHECK(text.find("1 it/s  ETA 00:00:49") != std::string::npos);  // the 40 of an earlier run do not count
+  CHECK(text.find("1 it/s  ETA 00:00:49") != std::string::npos);  // without the 40 of an earlier run
 }
 
-TEST_CASE("the rate follows what happens lately") {
+TEST_CASE("the rate is a moving average") {
   double time = 0;
   printed([&](std::FILE* file) {
     ProgressBar bar(0, {.out = file, .terminal = false, .smoothing = 10, .now = [&] { return time; }});
@@ -122,7 +122,7 @@ TEST_CASE("the rate follows what happens lately") {
   });
 }
 
-TEST_CASE("a log can be read back, to the last bit") {
+TEST_CASE("a log can be read back bit for bit") {
   const Folder folder;
   const auto path = folder.path / "log.csv";
   const double third = 1.0 / 3, tiny = 1e-300;
@@ -130,7 +130,7 @@ TEST_CASE("a log can be read back, to the last bit") {
     CsvLog log(path, {"wasserstein", "penalty"});
     CHECK_FALSE(log.last_iteration());
     log.append(10, std::vector{third, tiny});
-    CHECK(read_csv_log(path).rows.size() == 1);  // there at once
+    CHECK(read_csv_log(path).rows.size() == 1);  // flushed at once
     log.append(20, std::vector{std::numeric_limits<double>::quiet_NaN(), -0.5});
     CHECK_THROWS_AS(log.append(20, std::vector{1.0, 2.0}), Error);
     CHECK_THROWS_AS(log.append(30, std::vector{1.0}), Error);
@@ -145,7 +145,7 @@ TEST_CASE("a log can be read back, to the last bit") {
   CHECK_THROWS_AS(table.column("loss"), Error);
 }
 
-TEST_CASE("a resumed log loses the rows that are computed again, and a torn one") {
+TEST_CASE("a resumed log drops the rows that are computed again and an incomplete row") {
   const Folder folder;
   const auto path = folder.path / "log.csv";
   {
@@ -166,7 +166,7 @@ TEST_CASE("a resumed log loses the rows that are computed again, and a torn one"
   CHECK(read(path) == "iteration,w\n");
 }
 
-TEST_CASE("a log of something else is left alone") {
+TEST_CASE("a log of another run is not changed") {
   const Folder folder;
   const auto path = folder.path / "log.csv";
   {

@@ -1,4 +1,4 @@
-// Rankers: trained, kept, resumed, and used on motion.
+// Rankers: training, saving, resuming, and scoring motion.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Clips of four actions, several of each.
+/// Several clips of each of four actions.
 motion::Dataset four_actions() {
   std::vector<motion::LabelledMotion> motions;
   for (auto& m : motion::procedural_motions({.clips = 68, .seconds = 5, .rate = 8, .seed = 5}))
@@ -27,7 +27,7 @@ motion::Dataset four_actions() {
 
 }  // namespace
 
-TEST_CASE("descriptions are distinct by their words, the popular first") {
+TEST_CASE("descriptions are distinct by their words, the most frequent first") {
   std::vector<motion::DatasetClip> clips(5);
   clips[0].captions = {"Run / jog"};
   clips[1].captions = {"walk", "Walk!"};
@@ -44,15 +44,15 @@ TEST_CASE("descriptions are distinct by their words, the popular first") {
   CHECK(all.most_popular(9).size() == 3);
 }
 
-TEST_CASE("both rankers learn to tell actions apart") {
+TEST_CASE("both rankers learn to distinguish actions") {
   const motion::Dataset data = four_actions();
   for (const RankerKind kind : {RankerKind::cnn, RankerKind::rnn}) {
     const Context context;
     Ranker ranker(context, data.format, {.kind = kind, .hidden = 16});
     const Recall before = evaluate_ranker(ranker, data).retrieval.recall;
     double first = 0, last = 0;
-    RankerRunOptions run;
-    run.report = [&](std::size_t i, const RankerLosses& l) { (i == 1 ? first : last) = l.loss; };
+    RunOptions run;
+    run.report = [&](std::size_t i, std::span<const NamedLoss> l) { (i == 1 ? first : last) = loss_of(l, "loss"); };
     train(ranker, data, {.iterations = 150, .batch = 16, .adam = {.learning_rate = 3e-3}}, run);
     CHECK(last < 0.5 * first);
     const RankerEvaluation after = evaluate_ranker(ranker, data);
@@ -64,7 +64,7 @@ TEST_CASE("both rankers learn to tell actions apart") {
   }
 }
 
-TEST_CASE("a window is ranked alike as motion and as numbers") {
+TEST_CASE("a window has the same scores as motion and as normalised poses") {
   const motion::Dataset& data = small_data();
   const Context context({.precision = Precision::f64});
   const Ranker ranker(context, data.format, {.kind = RankerKind::rnn, .hidden = 8});
@@ -81,7 +81,7 @@ TEST_CASE("a window is ranked alike as motion and as numbers") {
     length += direct[i] * direct[i];
   }
   CHECK(length == doctest::Approx(1));
-  // The scores are products of features and descriptions.
+  // Scores are dot products of features and descriptions.
   const std::vector<std::string> texts{data.train[0].captions[0], data.train[1].captions[0]};
   const Var text = ranker.describe(Sentences(
       context, {data.train[0].sentences[0], data.train[1].sentences[0]}, data.format.vocabulary.size()));
@@ -91,7 +91,7 @@ TEST_CASE("a window is ranked alike as motion and as numbers") {
   CHECK(again[1] == doctest::Approx(scores[1]).epsilon(1e-4));
 }
 
-TEST_CASE("a motion of another rate is resampled, a short one refused") {
+TEST_CASE("a motion at another frame rate is resampled; a short one is refused") {
   const motion::Dataset& data = small_data();
   const Context context;
   const Ranker ranker(context, data.format, {.kind = RankerKind::rnn, .hidden = 8});
@@ -102,14 +102,14 @@ TEST_CASE("a motion of another rate is resampled, a short one refused") {
       says(message_of([&] { ranker.features({brief[0].motion}); }), "cannot be ranked, expected at least 8"));
 }
 
-TEST_CASE("a resumed run equals an unbroken one") {
+TEST_CASE("a resumed run equals an uninterrupted one") {
   const motion::Dataset& data = small_data();
   const fs::path folder = fs::temp_directory_path() / "motiongan_ranker_test";
   fs::remove_all(folder);
   const Context context;
   const auto run = [&](std::size_t iterations, bool keep, bool resume) {
     Ranker ranker(context, data.format, {.kind = RankerKind::cnn, .hidden = 8});
-    RankerRunOptions options;
+    RunOptions options;
     if (keep) options.save_dir = folder;
     options.resume = resume;
     train(ranker, data, {.iterations = iterations, .batch = 4, .descriptions = 3}, options);
@@ -127,7 +127,7 @@ TEST_CASE("a resumed run equals an unbroken one") {
   fs::remove_all(folder);
 }
 
-TEST_CASE("a step's candidates hold the right ones and K in all") {
+TEST_CASE("the candidates of a step contain the right descriptions and are K in all") {
   const motion::Dataset& data = small_data();
   const Context context;
   Ranker ranker(context, data.format, {.hidden = 8});
@@ -142,7 +142,7 @@ TEST_CASE("a step's candidates hold the right ones and K in all") {
   }
 }
 
-TEST_CASE("what cannot be is refused") {
+TEST_CASE("invalid data and files are refused") {
   const Context context;
   auto motions = motion::procedural_motions({.clips = 6, .seconds = 4, .rate = 8, .seed = 3});
   for (auto& m : motions) m.captions = {"move"};
@@ -151,6 +151,6 @@ TEST_CASE("what cannot be is refused") {
   CHECK(says(message_of([&] { RankerTrainer(ranker, one, {}); }), "have the same description"));
   const fs::path file = fs::temp_directory_path() / "motiongan_not_a_ranker.safetensors";
   Dvgan(context, small_data().format, {.hidden = 8}).save(file);
-  CHECK(says(message_of([&] { Ranker::load(context, file); }), "expected cnn_ranker or rnn_ranker"));
+  CHECK(says(message_of([&] { Ranker::load(context, file); }), "expected one of cnn_ranker, rnn_ranker; motiongan train ranker makes one"));
   fs::remove(file);
 }

@@ -1,4 +1,4 @@
-// Training steps: what they change, that they repeat bit for bit, and that they allocate and read nothing.
+// Training steps of DVGAN: what they change, bit-for-bit repeatability, no allocations and no read-back.
 #include <doctest/doctest.h>
 
 #include <motiongan/train/train.hpp>
@@ -12,7 +12,7 @@ namespace {
 
 const DvganTrainOptions small_options{.iterations = 1000, .critic_steps = 2, .batch = 4};
 
-/// A model and its trainer, on a context of their own.
+/// A model and its trainer with their own context.
 struct Run {
   Context context;
   Dvgan model;
@@ -25,7 +25,7 @@ struct Run {
 
 }  // namespace
 
-TEST_CASE("two runs are equal bit for bit, whichever options") {
+TEST_CASE("two runs with equal options are equal bit for bit") {
   for (const DvganTrainOptions& options :
        {small_options,
         DvganTrainOptions{
@@ -37,7 +37,7 @@ TEST_CASE("two runs are equal bit for bit, whichever options") {
     for (int i = 0; i < 4; ++i) {
       a.trainer.iterate();
       b.trainer.iterate();
-      a.trainer.losses();  // looking changes nothing
+      a.trainer.losses();  // reading losses changes nothing
     }
     CHECK(a.generator() == b.generator());
     CHECK(a.critic() == b.critic());
@@ -73,7 +73,7 @@ void check_what_steps_change(Run run) {
   CHECK(run.generator() == generator);
   const auto after = run.critic();
   for (std::size_t i = 0; i < after.size(); ++i) {
-    // A constant added to every score changes neither loss nor penalty.
+    // A constant added to every score changes neither loss nor penalty, so its gradient is zero.
     const std::string name = named_parameters(run.trainer.critic())[i].name;
     CAPTURE(name);
     if (!name.ends_with("score.bias")) CHECK(after[i] != critic[i]);
@@ -87,7 +87,7 @@ void check_what_steps_change(Run run) {
   }
 }
 
-TEST_CASE("a critic step changes the critic alone, a generator step the generator alone") {
+TEST_CASE("a critic step changes only the critic, a generator step only the generator") {
   check_what_steps_change(Run());
   check_what_steps_change(Run({.critic_steps = 2, .batch = 4, .critic = {.critic = CriticKind::rnn}},
                               {.generator = GeneratorKind::rnn, .hidden = 8}));
@@ -150,10 +150,10 @@ TEST_CASE("steady state: no allocation, no read-back, memory flat over 2,000 ite
   CHECK(now.reads == warm.reads);
   CHECK(now.peak_bytes == warm.peak_bytes);
   CHECK(std::isfinite(run.trainer.losses().wasserstein));
-  CHECK(now.reads == warm.reads + 3);  // so reads are counted
+  CHECK(now.reads == warm.reads + 3);  // losses() reads three values
 }
 
-TEST_CASE("the same for the recurrent networks") {
+TEST_CASE("steady state of the recurrent networks") {
   Run run({.iterations = 300, .critic_steps = 1, .batch = 2, .critic = {.critic = CriticKind::rnn}},
           {.generator = GeneratorKind::rnn, .hidden = 8});
   const ContextStatistics& now = run.context.statistics();
@@ -165,7 +165,7 @@ TEST_CASE("the same for the recurrent networks") {
   CHECK(now.bytes_in_use == warm.bytes_in_use);
 }
 
-TEST_CASE("completions in training: fakes that begin as the real motion does") {
+TEST_CASE("completions in training: fakes begin with the real frames") {
   const DvganOptions sizes{.generator = GeneratorKind::rnn, .hidden = 8};
   const auto options = [](double share) {
     return DvganTrainOptions{.critic_steps = 2, .batch = 3, .completion_share = share};
@@ -175,7 +175,7 @@ TEST_CASE("completions in training: fakes that begin as the real motion does") {
     for (int i = 0; i < 2; ++i) run->trainer.iterate();
   CHECK(all.generator() != none.generator());
   CHECK(all.generator() == again.generator());
-  // What is given needs no first pose: with nothing but completions, nothing moves what makes it.
+  // Completions use no initial pose, so the parameters that make it stay as they are.
   const auto first = Run(options(1), sizes).generator(), after = all.generator();
   const auto parameters = named_parameters(all.model);
   for (std::size_t i = 0; i < after.size(); ++i) {
@@ -217,7 +217,7 @@ TEST_CASE("windows are a function of seed and step, and are real windows of the 
     for (const motion::DatasetClip& clip : data.train)
       for (std::size_t start = 0; start < data.starts(clip) && !found; ++start) {
         data.window(clip, start, window);
-        bool equal = true;  // to the rounding of the turn, which the device computes in float
+        bool equal = true;  // up to rounding: the device rotates in float
         for (std::size_t i = 0; i < window.size(); ++i)
           equal = equal && std::abs(window[i] - drawn[i]) < 1e-4f;
         found = equal &&
@@ -227,11 +227,11 @@ TEST_CASE("windows are a function of seed and step, and are real windows of the 
   }
 }
 
-TEST_CASE("options that cannot be are refused") {
+TEST_CASE("invalid options are refused") {
   const auto refusal = [](const DvganTrainOptions& options) { return message_of([&] { Run run(options); }); };
-  CHECK(says(refusal({.critic_steps = 0}), "must be positive"));
-  CHECK(says(refusal({.batch = 0}), "must be positive"));
-  CHECK(says(refusal({.iterations = 10'000'000}), "10000000 iterations"));
+  CHECK(says(refusal({.critic_steps = 0}), "critic_steps is 0, expected at least 1"));
+  CHECK(says(refusal({.batch = 0}), "batch is 0, expected at least 1"));
+  CHECK(says(refusal({.iterations = 10'000'000}), "iterations is 10000000, expected at most"));
   Run run;
   CHECK(says(message_of([&] { run.trainer.losses(); }), "no iteration has run yet"));
   CHECK(says(message_of([&] { DvganTrainer(run.model, small_data(16), small_options); }),

@@ -1,4 +1,4 @@
-// Windows drawn on the device are those of the data set on the host.
+// Windows gathered on the device equal those of the data set on the host.
 #include "motiongan/train/windows.hpp"
 
 #include <doctest/doctest.h>
@@ -7,11 +7,11 @@
 
 using namespace motiongan;
 
-TEST_CASE("the device draws the host's windows, turned and not") {
+TEST_CASE("the device gathers the same windows as the host, with and without rotation") {
   const Context context;
   for (const motion::RootRotation mode : {motion::RootRotation::heading, motion::RootRotation::expmap})
     for (const bool root_position : {true, false}) {
-      // 8 frames at 4 Hz of clips of exactly 2 s at 4 Hz: one window a clip.
+      // Clips of exactly 8 frames: one window per clip.
       const auto motions = motion::procedural_motions({.clips = 4, .seconds = 2, .rate = 4});
       const auto data = motion::Dataset::from_motions(
           motions, {.frames = 8, .rate = 4, .root_position = root_position, .root_rotation = mode});

@@ -1,7 +1,6 @@
 // Context: one OpenCL device with its command queue, kernel programs and buffer pool.
 #pragma once
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>

@@ -15,6 +15,8 @@
 
 namespace motiongan::motion {
 
+struct ActionPrior;
+
 /// One clip at the data set's rate.
 struct ActionClip {
   std::string id;
@@ -64,6 +66,13 @@ class ActionDataset {
     return clip.frames >= 2 * format.frames ? clip.frames - 2 * format.frames + 1 : 0;
   }
 
+  /// The whole clip as positions in the world.
+  PositionClip clip(const ActionClip& clip) const;
+
+  /// The T frames of a clip from `first_frame` on, for a model to continue. Throws Error if the clip ends
+  /// before them.
+  ActionPrior prior(const ActionClip& clip, std::size_t first_frame = 0) const;
+
   /// Writes the split, one clip per line: `train <TAB> id <TAB> class` (or `test`), and the subject if known.
   void write_split(const std::filesystem::path& path) const {
     std::string text = concat("# split of ", train.size() + test.size(), " clips, seed ", options.split_seed,
@@ -82,3 +91,4 @@ class ActionDataset {
 }  // namespace motiongan::motion
 
 #include "motiongan/data/action_dataset_build.hpp"
+#include "motiongan/data/action_prior.hpp"

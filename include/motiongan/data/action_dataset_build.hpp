@@ -126,14 +126,15 @@ inline std::vector<Loaded> load_all(const std::vector<Source>& sources, std::vec
   chosen = std::move(kept);
   clips = std::move(kept_clips);
 
-  int root = 0;  // 0 for a clip in which nothing travels
+  int root = 0;  // clips in which nothing travels have root 0
   for (const Loaded& clip : clips) root = std::max(root, clip.root);
   in_two_threads(clips.size(), [&](std::size_t i) {
     if (clips[i].root != root) load(i, root);
   });
   for (std::size_t i = 1; i < clips.size(); ++i)
     require_same_joints(clips.front().clip.skeleton, clips[i].clip.skeleton,
-                        concat("clip '", clips[i].clip.id, "', compared with '", clips.front().clip.id, "',"));
+                        concat("clip '", clips[i].clip.id, "', compared with '", clips.front().clip.id,
+                               "',"));
   return clips;
 }
 

@@ -32,14 +32,14 @@ struct ActionDatasetOptions {
     list.add(labels, {.key = "labels",
                       .help = "file of lines `clip id <TAB> label` [FOLDER/labels.tsv]",
                       .type = "FILE"});
-    list.add(folders, {.key = "folders", .help = "a clip's label is the folder below FOLDER that it lies in"});
+    list.add(folders, {.key = "folders", .help = "a clip's label is its folder below FOLDER"});
     list.add(pattern, {.key = "pattern",
-                       .help = "of file names without extension: {label}, {subject}, * and text, such as "
+                       .help = "for file names without extension: {label}, {subject}, * and text, such as "
                                "*_{label}_*",
                        .type = "PATTERN"});
     list.add(classes, {.key = "classes", .help = "keep only clips of these labels [all]", .type = "A,B"});
     list.add(bones, {.key = "bones",
-                     .help = "lines `joint <TAB> parent` for CSV and NPY files [bones.tsv beside them]",
+                     .help = "lines `joint <TAB> parent` for CSV and NPY files [bones.tsv next to them]",
                      .type = "FILE"});
     list.add(first_frame, {.key = "first_frame",
                            .help = "auto: drop a T-pose that precedes the motion; keep; drop: the first frame"});
@@ -53,7 +53,7 @@ struct ActionDatasetOptions {
     list.add(train_share, {.key = "train_share",
                            .help = "fraction of the clips to train on; the rest is held out for testing",
                            .range = Range::between(0, 1)});
-    list.add(split_seed, {.key = "split_seed", .help = "selects which clips those are"});
+    list.add(split_seed, {.key = "split_seed", .help = "seed of that split"});
     list.add(frames, {.key = "frames",
                       .help = "T: frames of the given prior, and of what is generated at once",
                       .range = Range::at_least(1)});

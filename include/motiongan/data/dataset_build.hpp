@@ -70,7 +70,7 @@ inline std::vector<Used> encode_all(const std::vector<ClipSource>& sources, Data
     check_same_joints(used.front().clip.skeleton, sources[used.front().source].id, u.clip.skeleton,
                       sources[u.source].id);
     data.stride = std::min(data.stride, u.clip.stride);
-    root = std::max(root, u.clip.root);  // 0 for a clip in which nothing travels
+    root = std::max(root, u.clip.root);  // clips in which nothing travels have root 0
   }
   in_two_threads(used.size(), [&](std::size_t i) {
     EncodedClip& clip = used[i].clip;

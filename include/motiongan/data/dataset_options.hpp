@@ -33,9 +33,9 @@ struct DatasetOptions {
                       .range = Range::at_least(1)});
     list.add(rate, {.key = "rate", .help = "frames per second", .range = Range::above(0)});
     list.add(root_position,
-             {.key = "root_position", .help = "learn where the root is, not only how it turns"});
+             {.key = "root_position", .help = "learn the position of the root, not only its rotation"});
     list.add(root_rotation, {.key = "root_rotation",
-                             .help = "heading: place and turn, every motion starts facing the same way; "
+                             .help = "heading: position and yaw, every motion starts facing the same way; "
                                      "velocity: steps and turns, for motion of any length; expmap: as the "
                                      "papers; auto: velocity for an RNN generator, else heading"});
     list.add(first_frame, {.key = "first_frame",
@@ -43,7 +43,7 @@ struct DatasetOptions {
     list.add(train_share, {.key = "train_share",
                            .help = "fraction of the clips to train on; the rest is held out for testing",
                            .range = Range::between(0, 1)});
-    list.add(split_seed, {.key = "split_seed", .help = "selects which clips those are"});
+    list.add(split_seed, {.key = "split_seed", .help = "seed of that split"});
   }
 };
 

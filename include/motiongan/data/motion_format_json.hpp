@@ -23,16 +23,17 @@ namespace motiongan::io {
 /// exactly. Throws Error for an inconsistent format.
 inline nlohmann::json to_json(const motion::MotionFormat& format) {
   format.check();
-  nlohmann::json json = {{"skeleton", motion::format_hierarchy(format.skeleton())},
-                         {"root", format.skeleton().joints[format.layout.root()].name},
-                         {"root_position", format.layout.root_position()},
-                         {"root_rotation", name_of(format.layout.root_rotation())},
-                         {"rate", format.rate},
-                         {"frames", format.frames},
-                         {"mean", format.normalizer.mean()},
-                         {"std", format.normalizer.std()},
-                         {"relative_dims", format.relative_dims},
-                         {"vocabulary", format.vocabulary.words()}};
+  nlohmann::json json;
+  json["skeleton"] = motion::format_hierarchy(format.skeleton());
+  json["root"] = format.skeleton().joints[format.layout.root()].name;
+  json["root_position"] = format.layout.root_position();
+  json["root_rotation"] = std::string(name_of(format.layout.root_rotation()));
+  json["rate"] = format.rate;
+  json["frames"] = format.frames;
+  json["mean"] = format.normalizer.mean();
+  json["std"] = format.normalizer.std();
+  json["relative_dims"] = format.relative_dims;
+  json["vocabulary"] = format.vocabulary.words();
   if (!format.low.empty()) {
     json["low"] = format.low;
     json["high"] = format.high;

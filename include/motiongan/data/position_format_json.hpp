@@ -17,13 +17,15 @@ namespace motiongan::io {
 /// "classes": [names]}. Every number round-trips exactly. Throws Error for an inconsistent format.
 inline nlohmann::json to_json(const motion::PositionFormat& format) {
   format.check();
-  return {{"skeleton", motion::format_hierarchy(format.skeleton())},
-          {"root_track", format.layout.root_track()},
-          {"rate", format.rate},
-          {"frames", format.frames},
-          {"mean", format.normalizer.mean()},
-          {"std", format.normalizer.std()},
-          {"classes", format.classes}};
+  nlohmann::json json;
+  json["skeleton"] = motion::format_hierarchy(format.skeleton());
+  json["root_track"] = format.layout.root_track();
+  json["rate"] = format.rate;
+  json["frames"] = format.frames;
+  json["mean"] = format.normalizer.mean();
+  json["std"] = format.normalizer.std();
+  json["classes"] = format.classes;
+  return json;
 }
 
 /// Inverse of to_json. Throws Error, naming the member, if one is missing, of another type or inconsistent

@@ -1,5 +1,5 @@
-// The second paper's comparison: its model, the model without each of its parts, and an LSTM (SPEC section
-// 7).
+// The ablation study of Malek-Podjaski & Deligianni (Fig. 2): the full model, the model without some of its
+// parts, and the LSTM baseline.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -18,44 +18,46 @@
 
 namespace motiongan {
 
-/// A model of the comparison, made of the full one's options.
+/// A model of the study: which parts of the full model it has.
 struct AblationVariant {
   std::string_view name;
   std::string_view title;  ///< for plots
-  std::string_view paper;  ///< what the paper says of it, in short; its figures print no numbers
+  std::string_view paper;  ///< the paper's finding in short; its figures print no numbers
   bool attention = true, skeleton_loss = true, blend_loss = true, lstm = false;
 
+  /// The variant's model options, from those of the full model.
   ActionGanOptions model(ActionGanOptions options) const {
     options.generator = lstm ? ActionGenerator::lstm : ActionGenerator::attention;
     options.attention = options.attention && attention;
     if (lstm) options.noise_dim = 0;
     return options;
   }
+  /// The variant's training options, from those of the full model.
   AttentionTrainOptions training(AttentionTrainOptions options) const {
     if (!skeleton_loss) options.skeleton_weight = 0;
     if (!blend_loss) options.blend_weight = 0;
     return options;
   }
-  /// The LSTM's, with the batches and the steps of the others.
+  /// The LSTM's training options, with the same batches, iterations, Adam and seed.
   static BaselineTrainOptions baseline_training(const AttentionTrainOptions& options) {
     return {options.iterations, options.batch, options.balanced, options.adam, options.seed};
   }
 };
 
-/// The seven of SPEC section 7, the full model first.
+/// All seven variants, the full model first.
 inline std::span<const AblationVariant> ablation_variants() {
   static constexpr AblationVariant all[] = {
-      {"full", "full", "best: lowest deviation from the truth over time"},
+      {"full", "full", "best: lowest deviation from ground truth over time"},
       {"no_attention", "no attention", "clearly less accurate over time", false},
-      {"no_blend", "no blend", "starts close, soon leaves the truth", true, true, false},
+      {"no_blend", "no blend", "starts close, soon diverges from ground truth", true, true, false},
       {"no_skeleton", "no skeleton", "much less accurate", true, false, true},
       {"no_losses", "no losses", "worse than with the losses", true, false, false},
       {"neither", "neither", "worse than with all parts", false, false, false},
-      {"lstm", "LSTM", "starts very close, then falls to a mean pose", false, false, false, true}};
+      {"lstm", "LSTM", "starts very close, then collapses to a mean pose", false, false, false, true}};
   return all;
 }
 
-/// One of ablation_variants(). Error, naming them, for another name.
+/// The variant called `name`. Throws Error, listing the names, if there is none.
 inline const AblationVariant& ablation_variant(std::string_view name) {
   std::string names;
   for (const AblationVariant& v : ablation_variants()) {
@@ -65,16 +67,16 @@ inline const AblationVariant& ablation_variant(std::string_view name) {
   throw Error("there is no variant '", name, "'; the variants are: ", names);
 }
 
-/// What was measured of one row of the table.
+/// The measures of one variant.
 struct AblationResult {
   std::string name;
   ActionMeasures measures;                   ///< over the frames of the paper's Fig. 2
-  std::optional<ActionMeasures> long_run{};  ///< over a long time, where it was made
-  std::size_t iterations = 0;                ///< of its training; 0: not known, or none
+  std::optional<ActionMeasures> long_run{};  ///< over a long rollout, if one was made
+  std::size_t iterations = 0;                ///< of its training; 0: not known, or not trained
 };
 
-/// The mean angles of every frame: frame, seconds, truth, then a column for each result. Frame 1 is the first
-/// one after the prior.
+/// Writes the mean joint angle of every frame as CSV: frame, seconds, truth (ground truth), then a column for
+/// each result. Frame 1 is the first frame after the prior.
 inline void write_angles(const std::filesystem::path& path, const ActionEvaluation& evaluation,
                          std::span<const AblationResult> results) {
   std::string text = "frame,seconds,truth";
@@ -89,8 +91,8 @@ inline void write_angles(const std::filesystem::path& path, const ActionEvaluati
   motion::write_text_atomically(path, text);
 }
 
-/// A row for each result, the truth first; `metres` says that lengths are in metres, which are then written
-/// in millimetres where they are short. Columns ending in `_long` are of the long run.
+/// Writes the measures as CSV, a row for each result, ground truth first. `metres`: lengths are in metres;
+/// short lengths are then written in millimetres. Columns that end in `_long` belong to the long rollout.
 inline void write_table(const std::filesystem::path& path, const ActionEvaluation& evaluation,
                         std::span<const AblationResult> results, bool metres) {
   const char* const small = metres ? "_mm" : "";
@@ -120,18 +122,22 @@ inline void write_table(const std::filesystem::path& path, const ActionEvaluatio
   motion::write_text_atomically(path, text);
 }
 
-enum class Verdict { yes, no, even };
-
-/// What the paper says of a part of its model, and whether it is so here.
-struct AblationClaim {
-  std::string claim;              ///< such as "attention brings the curve nearer to the truth"
-  std::string evidence;           ///< the numbers
-  Verdict verdict = Verdict::no;  ///< even: the two numbers are within 10% of each other
+/// Whether results support a claim.
+enum class Verdict {
+  yes,
+  no,
+  even  ///< the two numbers are within 10% of each other
 };
 
-/// The paper's claims that the results can tell about, those of variants that are there. One training of each
-/// with one seed proves little: where two numbers are near to each other another seed may turn them round.
-/// `metres`: as write_table().
+/// A claim of the paper about a part of its model, and whether the results support it.
+struct AblationClaim {
+  std::string claim;     ///< such as "attention: closer to the ground-truth curve"
+  std::string evidence;  ///< the numbers compared
+  Verdict verdict = Verdict::no;
+};
+
+/// Checks the paper's claims about the variants among the results. A single training run per variant is weak
+/// evidence: where two numbers are close, another seed may reverse them. `metres`: as in write_table().
 inline std::vector<AblationClaim> judge_claims(std::span<const AblationResult> results, bool metres) {
   const auto find = [&](std::string_view name) -> const ActionMeasures* {
     for (const AblationResult& r : results)
@@ -155,23 +161,24 @@ inline std::vector<AblationClaim> judge_claims(std::span<const AblationResult> r
          : a->*what < b->*what                                              ? Verdict::yes
                                                                             : Verdict::no});
   };
-  less("attention: nearer to the truth's curve", "full", "no_attention", &ActionMeasures::curve_error,
+  less("attention: closer to the ground-truth curve", "full", "no_attention", &ActionMeasures::curve_error,
        " degrees");
-  less("the blend loss: nearer to the truth's curve", "full", "no_blend", &ActionMeasures::curve_error,
+  less("blend loss: closer to the ground-truth curve", "full", "no_blend", &ActionMeasures::curve_error,
        " degrees");
-  less("the skeleton loss: nearer to the truth's curve", "full", "no_skeleton", &ActionMeasures::curve_error,
+  less("skeleton loss: closer to the ground-truth curve", "full", "no_skeleton", &ActionMeasures::curve_error,
        " degrees");
-  less("both losses: nearer to the truth's curve", "full", "no_losses", &ActionMeasures::curve_error,
+  less("both losses: closer to the ground-truth curve", "full", "no_losses", &ActionMeasures::curve_error,
        " degrees");
-  less("nearer to the truth's curve than the LSTM", "full", "lstm", &ActionMeasures::curve_error, " degrees");
-  less("the skeleton loss: bones keep their lengths better", "full", "no_skeleton",
+  less("closer to the ground-truth curve than the LSTM", "full", "lstm", &ActionMeasures::curve_error,
+       " degrees");
+  less("skeleton loss: smaller bone-length error", "full", "no_skeleton",
        &ActionMeasures::bone_error, "%");
-  less("the blend loss: smaller steps at the seams", "full", "no_blend", &ActionMeasures::seam_body,
+  less("blend loss: smaller jumps at the seams", "full", "no_blend", &ActionMeasures::seam_body,
        metres ? " mm" : "", metres ? 1000 : 1);
   if (const ActionMeasures* lstm = find("lstm")) {
     const double first = lstm->angles.front(), last = lstm->angles.back();
     out.push_back(
-        {"the LSTM: nearer at first than at last, and its angles fall",
+        {"LSTM: its error grows over time and its mean angle falls",
          concat("error ", rounded(lstm->curve_error_first), " degrees in the first second, ",
                 rounded(lstm->curve_error_last), " in the last; mean angle ", rounded(first), " to ",
                 rounded(last)),

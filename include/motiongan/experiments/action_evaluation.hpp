@@ -1,4 +1,4 @@
-// How far what a model makes is from what really followed: the second paper's evaluation (SPEC section 7).
+// Evaluation of action models against real futures (Malek-Podjaski & Deligianni, Fig. 2).
 #pragma once
 #include <cmath>
 #include <functional>
@@ -13,13 +13,13 @@
 
 namespace motiongan {
 
-/// Goes on from priors, each [T, dof] normalised, of the classes `labels`: for each of them the next `frames`
-/// frames, [frames, dof] normalised.
+/// A model as a function: for each prior [T, dof] of class labels[i], the next `frames` frames [frames, dof],
+/// all normalised.
 using FutureMaker = std::function<std::vector<std::vector<float>>(
     std::span<const std::vector<float>> priors, std::span<const std::size_t> labels, std::size_t frames)>;
 
-/// What a model makes, its output fed back as the next prior; the model must outlive the maker. Window i has
-/// the noise of sample i of `seed`, where the model takes some.
+/// The autoregressive rollout of a model, which must outlive the returned function. Window i uses noise
+/// sample i of `seed`, if the model takes noise.
 inline FutureMaker future_maker(const ActionGan& model, std::uint64_t seed = 1) {
   return [&model, seed](std::span<const std::vector<float>> priors, std::span<const std::size_t> labels,
                         std::size_t frames) {
@@ -31,7 +31,7 @@ inline FutureMaker future_maker(const ActionGan& model, std::uint64_t seed = 1) 
       prior.id = concat("of window ", i);
       prior.poses = priors[i];
       prior.skeleton = model.format().skeleton();
-      prior.places.resize(length);  // poses are wanted, not where they stand
+      prior.places.resize(length);  // only poses are used, so the root track may be zero
       ids.push_back(stream.add(
           {.prior = &prior, .label = labels[i], .seed = seed, .sample = static_cast<std::uint32_t>(i)}));
     }
@@ -48,7 +48,8 @@ inline FutureMaker future_maker(const ActionGan& model, std::uint64_t seed = 1) 
   };
 }
 
-/// Does not move at all: the prior's last pose, held, without steps and turns. The format must outlive it.
+/// The zero-velocity baseline: holds the prior's last pose, with the root at rest. The format must outlive
+/// the returned function.
 inline FutureMaker stand_still(const motion::PositionFormat& format) {
   return [&format](std::span<const std::vector<float>> priors, std::span<const std::size_t>,
                    std::size_t frames) {
@@ -67,44 +68,45 @@ inline FutureMaker stand_still(const motion::PositionFormat& format) {
   };
 }
 
-/// What was measured of a model, or of the real motion, over all windows. Lengths are in the file's unit
+/// Measures of a model's motion, or of the real motion, over all windows. Lengths are in the files' unit
 /// times EvaluationOptions::unit_metres.
 struct ActionMeasures {
   std::vector<double> angles;  ///< [frames], degrees: mean angle between adjacent bones (the paper's Fig. 2)
-  /// Mean over frames of | mean angle - the real motion's mean angle |: how far the two curves of Fig. 2 lie
-  /// apart, in degrees. What is wrong upwards in one window and downwards in another cancels out.
+  /// Mean over frames of |mean angle - mean angle of the real motion|, in degrees: the distance between the
+  /// two curves of Fig. 2. Errors of opposite sign in different windows cancel.
   double curve_error = 0;
-  double curve_error_first = 0;  ///< the same over the first T frames, the first second
+  double curve_error_first = 0;  ///< the same over the first T frames
   double curve_error_last = 0;   ///< the same over the last T frames
-  /// Mean over windows and frames of | angle - the real angle in that window and frame |, in degrees; nothing
-  /// cancels out but within a pose.
+  /// Mean over windows and frames of |angle - real angle of that window and frame|, in degrees. Errors cancel
+  /// only within a pose.
   double window_error = 0;
-  double window_error_deviation = 0;  ///< standard deviation of that between windows
-  double bone_error = 0;              ///< | length / length in the prior's first frame - 1 |, in percent
-  /// Share of windows whose bones are off by more than 100% over the last T frames: made motion that has
-  /// fallen apart. A few of them decide all means of a long run.
+  double window_error_deviation = 0;  ///< its standard deviation between windows
+  double bone_error = 0;              ///< mean |length / length in the prior's first frame - 1|, in percent
+  /// Fraction of windows with a bone-length error above 100% (or NaN) over the last T frames: collapsed
+  /// motion. A few such windows dominate the means of a long rollout.
   double broken = 0;
-  /// Mean step of the joints at the ends of seconds: from the prior to the first frame made, and where a
-  /// generator was fed its own output. The real motion has a step there too: its row has it.
+  /// Mean displacement of the joints at the seams: from the prior to the first generated frame, and every T
+  /// frames after it, where a generator is fed its own output. Real motion moves there too; compare with it.
   double seam = 0;
-  double seam_body = 0;   ///< the same without the root's own step
-  double first_seam = 0;  ///< of the prior to the first frame made alone
-  double step = 0;        ///< median step of the joints between frames, mean over windows
+  double seam_body = 0;   ///< the same without the root's displacement
+  double first_seam = 0;  ///< the first seam alone, from the prior to the first generated frame
+  double step = 0;        ///< median displacement of the joints between frames, mean over windows
   double speed = 0;       ///< of the root over the ground, per second
-  double distance = 0;    ///< of the root from first to last frame, straight
+  double distance = 0;    ///< of the root, straight from first to last frame
 };
 
+/// Options of ActionEvaluation.
 struct EvaluationOptions {
-  std::size_t windows = 96;  ///< at most
-  std::size_t frames = 70;   ///< after each prior; the paper: 70 at 30 per second
-  double unit_metres = 1;    ///< size of the file's unit: lengths come out in metres; 1: in the file's unit
-  std::uint64_t seed = 1;    ///< of the windows
+  std::size_t windows = 96;  ///< maximum number of windows
+  std::size_t frames = 70;   ///< frames after each prior; the paper: 70 at 30 Hz
+  double unit_metres = 1;    ///< metres per unit of the files; 1 keeps their unit
+  std::uint64_t seed = 1;    ///< seed of the choice of windows
 };
 
-/// Measures models on the test clips of one data set. The data set must outlive it.
+/// Measures models on the test clips of a data set, which must outlive it.
 class ActionEvaluation {
  public:
-  /// Error if no test clip is long enough.
+  /// Throws Error if no test clip is long enough.
   ActionEvaluation(const motion::ActionDataset& data, const EvaluationOptions& options = {})
       : data_(data),
         options_(options),
@@ -129,22 +131,23 @@ class ActionEvaluation {
   const std::vector<std::vector<float>>& priors() const { return priors_; }
   const std::vector<std::size_t>& labels() const { return labels_; }
 
-  /// The real motion's measures; its errors are 0.
+  /// The measures of the real motion; its errors are 0.
   const ActionMeasures& truth() const { return truth_; }
 
-  /// The windows' real positions, [T + frames, joints] each, in the world.
+  /// The real positions of each window, [T + frames, joints], in world space.
   const std::vector<std::vector<motion::Vec3>>& real() const { return real_; }
 
-  /// Priors with what follows them, [T + frames, joints] each, in the world, of any length.
+  /// Each prior with a model's continuation of `frames` frames, [T + frames, joints], in world space. Throws
+  /// Error if the model returns another number of values.
   std::vector<std::vector<motion::Vec3>> positions(const FutureMaker& maker, std::size_t frames) const {
     const std::size_t length = format().frames, joints = format().skeleton().size();
     const std::vector<std::vector<float>> made = maker(priors_, labels_, frames);
-    require(made.size() == priors_.size(), "a model made ", made.size(), " motions of ", priors_.size(),
+    require(made.size() == priors_.size(), "a model made ", made.size(), " motions for ", priors_.size(),
             " priors");
     std::vector<std::vector<motion::Vec3>> out;
     for (std::size_t i = 0; i < made.size(); ++i) {
       require(made[i].size() == frames * format().dof(), "a model made ", made[i].size(),
-              " values, expected ", frames, " frames x ", format().dof(), " dimensions");
+              " values, expected ", frames, " frames x ", format().dof(), " channels");
       std::vector<motion::Vec3> all(real_[i].begin(),
                                     real_[i].begin() + static_cast<std::ptrdiff_t>(length * joints));
       const EvaluationWindow& w = windows_.windows[i];
@@ -161,10 +164,11 @@ class ActionEvaluation {
     return measure_positions(positions(maker, options_.frames), true);
   }
 
-  /// Measures positions() of any length by themselves: errors of angles are 0.
+  /// Measures positions() of any length without comparing with the real motion: angle errors are 0. Throws
+  /// Error unless there is one motion per window.
   ActionMeasures measure_alone(const std::vector<std::vector<motion::Vec3>>& all) const {
     require(all.size() == real_.size() && !all.front().empty(), "found positions of ", all.size(),
-            " motions, expected those of ", real_.size(), " windows");
+            " motions, expected ", real_.size(), " (one for each window)");
     return measure_positions(all, false);
   }
 
@@ -200,7 +204,7 @@ class ActionEvaluation {
       out.bone_error += bone_length_error(format().skeleton(), future, both.first(joints)) / count;
       const auto last_part = future.last(std::min(frames, length) * joints);
       const double at_last = bone_length_error(format().skeleton(), last_part, both.first(joints));
-      out.broken += (at_last <= 100 ? 0 : 1) / count;  // a value that is no number is broken too
+      out.broken += (at_last <= 100 ? 0 : 1) / count;  // NaN counts as broken
       const std::size_t seams = (frames + length - 1) / length;
       for (std::size_t s = 1; s <= seams; ++s) {
         const FrameStep jump = seam_jump(both.subspan((s * length - 1) * joints, joints),
@@ -209,7 +213,7 @@ class ActionEvaluation {
         out.seam_body += jump.body * share(seams) / count;
         if (s == 1) out.first_seam += jump.world / count;
       }
-      // From the prior's last frame on, so that the way holds as many steps as frames were made.
+      // From the prior's last frame on, so that there are as many steps as generated frames.
       const auto from_prior = both.subspan((length - 1) * joints);
       out.step += median_step(from_prior, joints, options_.unit_metres).world / count;
       const Distance way = distance_travelled(from_prior, joints, options_.unit_metres);

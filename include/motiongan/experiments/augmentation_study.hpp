@@ -1,7 +1,6 @@
-// Whether synthetic clips help: a classifier trained on real clips only, and on real and synthetic ones (SPEC
-// 5).
+// Data augmentation study: a classifier trained on real clips, compared with one trained on real and
+// synthetic clips (the application of Malek-Podjaski & Deligianni).
 #pragma once
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -9,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "motiongan/core/clock.hpp"
 #include "motiongan/metrics/mean_std.hpp"
 #include "motiongan/networks/attention_classifier.hpp"
 #include "motiongan/optim/adam.hpp"
@@ -17,33 +17,36 @@
 
 namespace motiongan {
 
+/// Options of study_augmentation().
 struct AugmentationStudyOptions {
-  std::size_t seeds = 3;         ///< each trains two classifiers, alike but for the clips
-  std::uint64_t first_seed = 1;  ///< of weights and batches
+  std::size_t seeds = 3;         ///< each trains two classifiers that differ only in their training clips
+  std::uint64_t first_seed = 1;  ///< seed of weights and batches; counts up
   std::size_t iterations = 500;  ///< steps of each classifier
-  double max_minutes = 0;        ///< stop each classifier after that long; 0: no limit
+  double max_minutes = 0;        ///< stop each classifier after this time; 0: no limit
   std::size_t batch = 64;
-  std::size_t hidden = 256;
-  bool attention = true;
-  bool balanced = true;  ///< draw classes alike
+  std::size_t hidden = 256;  ///< width of the classifiers
+  bool attention = true;     ///< self-attention in the classifiers
+  bool balanced = true;      ///< draw classes with equal probability
   AdamOptions adam{};
-  std::function<bool()> should_stop = {};  ///< asked after every step
+  std::function<bool()> should_stop = {};  ///< called after every step; true stops the study
   std::function<void(std::size_t step, double loss)> report =
-      {};  ///< every 20 steps, counted over all classifiers
+      {};  ///< called every 20 steps; steps are counted over all classifiers
 };
 
-/// Share that a classifier gets right.
+/// Classification accuracy, 0..1.
 struct StudyAccuracy {
-  double windows = 0;  ///< of seconds of motion
-  double clips = 0;    ///< of clips, by the sum of the log-probabilities of their windows
+  double windows = 0;  ///< over windows of T frames
+  double clips = 0;    ///< over clips, by the sum of the log-probabilities of their windows
 };
 
+/// The result for one seed.
 struct AugmentationStudyRow {
   std::uint64_t seed = 0;
   StudyAccuracy real, augmented;
 };
 
-/// Synthetic clips as clips of the data set: its normalizer, its numbers of classes.
+/// Converts synthetic clips of `model` to the format of `data`: its frame rate, normalisation and class
+/// labels. Throws Error if `data` lacks one of the classes.
 inline std::vector<motion::ActionClip> as_clips_of(const motion::ActionDataset& data,
                                                    const ActionGan& model,
                                                    std::span<const SyntheticClip> synthetic) {
@@ -63,8 +66,8 @@ inline std::vector<motion::ActionClip> as_clips_of(const motion::ActionDataset& 
   return out;
 }
 
-/// A classifier trained on the second halves of windows drawn from `clips`; with a should_stop that said so,
-/// less than that. `before` steps are counted as done already in what report() is told.
+/// Trains a classifier on the second halves (futures) of windows drawn from `clips`, until
+/// options.iterations, max_minutes or should_stop. `before` is added to the step that report() is given.
 inline AttentionClassifier train_classifier(const Context& context, const motion::ActionDataset& data,
                                             const std::vector<motion::ActionClip>& clips, std::uint64_t seed,
                                             const AugmentationStudyOptions& options, std::size_t before = 0) {
@@ -74,31 +77,31 @@ inline AttentionClassifier train_classifier(const Context& context, const motion
                                                               .attention = options.attention});
   const ActionSampler windows(context, data, clips, options.balanced);
   Adam adam(named_parameters(classifier), options.adam);
-  const auto start = std::chrono::steady_clock::now();
+  const double start = clock_seconds();
   for (std::size_t step = 0; step < options.iterations; ++step) {
     const ActionBatch batch = windows.draw(seed, static_cast<std::uint32_t>(step), options.batch);
     const Var loss = cross_entropy(classifier(Var::constant(batch.future)), Var::constant(batch.classes));
     adam.step(grad(loss, adam.parameters()));
     if (options.report && (step + 1) % 20 == 0) options.report(before + step + 1, loss.item());
-    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
-    if (options.max_minutes > 0 && passed.count() > 60 * options.max_minutes) break;
+    if (options.max_minutes > 0 && clock_seconds() - start > 60 * options.max_minutes) break;
     if (options.should_stop && options.should_stop()) break;
   }
   return classifier;
 }
 
-/// On windows of T frames of `clips`, half a window apart.
+/// The accuracy of a classifier on windows of T frames of `clips`, half a window apart. Throws Error if there
+/// are no clips.
 inline StudyAccuracy accuracy_on(const Context& context, const AttentionClassifier& classifier,
                                  const motion::ActionDataset& data,
                                  const std::vector<motion::ActionClip>& clips) {
-  require(!clips.empty(), "there are no clips held out to measure accuracy on");
+  require(!clips.empty(), "there are no held-out clips to measure accuracy on");
   const NoGrad values_only;
   const std::size_t frames = data.format.frames, dof = data.format.dof(),
                     classes = data.format.classes.size();
   const std::size_t hop = std::max<std::size_t>(1, frames / 2);
   std::size_t windows = 0, right_windows = 0, right_clips = 0;
   for (const motion::ActionClip& clip : clips) {
-    const std::size_t count = (clip.frames - frames) / hop + 1;  // a clip of a data set holds two windows
+    const std::size_t count = (clip.frames - frames) / hop + 1;  // clips have at least 2T frames
     std::vector<float> poses(frames * count * dof);
     for (std::size_t f = 0; f < frames; ++f)
       for (std::size_t w = 0; w < count; ++w)
@@ -123,17 +126,17 @@ inline StudyAccuracy accuracy_on(const Context& context, const AttentionClassifi
           static_cast<double>(right_clips) / static_cast<double>(clips.size())};
 }
 
-/// For each seed a classifier trained on data.train and one, of the same first weights, on data.train and
-/// `synthetic`; both measured on data.test. Rows of seeds that were not finished when should_stop() said so
-/// are left out.
+/// For each seed trains two classifiers with the same initial weights, one on data.train and one on
+/// data.train and `synthetic`, and measures both on data.test. A seed that should_stop() interrupts is left
+/// out. Throws Error if an option is 0, or if there are no test or synthetic clips.
 inline std::vector<AugmentationStudyRow> study_augmentation(const Context& context,
                                                             const motion::ActionDataset& data,
                                                             const std::vector<motion::ActionClip>& synthetic,
                                                             const AugmentationStudyOptions& options) {
   require(options.seeds > 0 && options.iterations > 0 && options.batch > 0,
           "seeds, iterations and batch of the study must be positive");
-  require(!data.test.empty(), "the data set keeps no clips for testing; the study needs some");
-  require(!synthetic.empty(), "the study needs synthetic clips");
+  require(!data.test.empty(), "the data set has no clips for testing, expected at least one");
+  require(!synthetic.empty(), "there are no synthetic clips, expected at least one");
   std::vector<motion::ActionClip> both = data.train;
   both.insert(both.end(), synthetic.begin(), synthetic.end());
   std::vector<AugmentationStudyRow> rows;

@@ -1,4 +1,4 @@
-// Models that complete the motions of Table 3: what they are trained on, and their errors (SPEC section 7).
+// Models in the completion experiment (Lin & Amer, Table 3): their training data and their errors.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace motiongan {
 
-/// What predictors are trained on.
+/// The training data of the baselines.
 inline PredictionData prediction_data(const CompletionData& data) {
   PredictionData out{
       .dof = data.dof(), .sequences = {}, .actions = {}, .action_count = data.classes().size()};
@@ -26,7 +26,7 @@ inline PredictionData prediction_data(const CompletionData& data) {
   return out;
 }
 
-/// Errors by action of a predictor, [actions].
+/// The errors of a baseline, averaged by action, [actions].
 inline std::vector<CompletionErrors> prediction_errors(const PredictionModel& model,
                                                        const CompletionData& data) {
   using P = CompletionProtocol;
@@ -50,13 +50,13 @@ inline std::vector<CompletionErrors> prediction_errors(const PredictionModel& mo
   return mean_by_action(data, errors);
 }
 
-/// What a DVGAN is trained on: windows of `frames` poses, every `stride`-th of the protocol's frames (2: 12.5
-/// per second for Human3.6M), with the action's name for a caption. Every column of the text is a number of
-/// the pose as it stands there, of a made-up flat skeleton; all clips are for training. Clips that hold no
-/// window are in `skipped`. Error if none does.
+/// The training data of DVGAN: windows of `frames` poses, `stride` of the protocol's frames apart (2: 12.5 Hz
+/// for Human3.6M), captioned with the action's name. The columns of the text are used unchanged as the pose
+/// vector, with a placeholder flat skeleton. All clips are for training; those that are too short are listed
+/// in `skipped`. Throws Error if every clip is.
 inline motion::Dataset completion_dataset(const CompletionData& data, std::size_t frames,
                                           std::size_t stride) {
-  require(frames > 0 && stride > 0, "windows of ", frames, " frames with a stride of ", stride,
+  require(frames > 0 && stride > 0, "frames is ", frames, " and stride is ", stride,
           ", expected at least 1 of each");
   motion::Dataset out;
   motion::Skeleton skeleton;
@@ -99,25 +99,25 @@ inline motion::Dataset completion_dataset(const CompletionData& data, std::size_
   return out;
 }
 
-/// Errors by action of several completions of each test, [actions].
+/// Errors by action, [actions], of several sampled completions of each test.
 struct SampledErrors {
-  std::vector<CompletionErrors> mean;  ///< over the samples
-  std::vector<CompletionErrors> best;  ///< of each test the smallest of the samples', at each time by itself
+  std::vector<CompletionErrors> mean;  ///< mean over the samples
+  std::vector<CompletionErrors> best;  ///< smallest error among the samples, at each time separately
 };
 
-/// Errors by action of a DVGAN that was trained with a stride on completion_dataset(). The prefix is every
-/// stride-th of the 50 frames, the last one among them; times that are no frame of the model are NaN. Sample
-/// i of test t is the same motion whatever else is asked for. Error for a CNN generator, and for a model of
-/// other data.
+/// The errors of a DVGAN that was trained on completion_dataset() with this stride. The prefix is every
+/// stride-th of the 50 frames, including the last; errors at times between the model's frames are NaN. Sample
+/// i of test t is the same motion whatever the number of samples. Throws Error if the model has a CNN
+/// generator or was trained on other data.
 inline SampledErrors dvgan_errors(const Dvgan& model, const CompletionData& data, std::size_t stride,
                                   std::size_t samples, std::uint64_t seed) {
   using P = CompletionProtocol;
   const std::size_t dof = data.dof();
-  require(samples > 0 && samples < 65536, samples, " samples were asked for, expected 1 to 65535");
-  require(stride > 0 && stride <= P::future, "a stride of ", stride, ", expected 1 to ", P::future);
+  require(samples > 0 && samples < 65536, "samples is ", samples, ", expected 1 to 65535");
+  require(stride > 0 && stride <= P::future, "stride is ", stride, ", expected 1 to ", P::future);
   require(model.format().normalizer.kept() == data.normalizer().kept(),
-          "the model was trained on other data: it knows ", model.format().dof(), " numbers of ",
-          model.format().normalizer.full_dof(), ", the data has ", dof, " of ", data.columns());
+          "the model was trained on other data: it has ", model.format().dof(), " of ",
+          model.format().normalizer.full_dof(), " channels, the data has ", dof, " of ", data.columns());
   const std::size_t first = (P::prefix - 1) % stride, given = (P::prefix - 1 - first) / stride + 1;
   const std::size_t made_frames = P::future / stride;
   std::vector<CompletionErrors> mean, best;
@@ -137,7 +137,7 @@ inline SampledErrors dvgan_errors(const Dvgan& model, const CompletionData& data
     CompletionErrors sum{}, least;
     least.fill(std::numeric_limits<double>::infinity());
     for (std::size_t s = 0; s < samples; ++s) {
-      // Frames between those of the model are not measured; they hold what is there.
+      // Frames between the model's repeat the previous one; they are not measured.
       std::vector<float> prediction(P::future * dof);
       for (std::size_t f = 0; f < P::future; ++f) {
         const std::size_t m = std::clamp<std::size_t>((f + 1) / stride, 1, made_frames) - 1;

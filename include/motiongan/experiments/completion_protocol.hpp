@@ -1,5 +1,5 @@
-// Completion error (Table 3): what is given, what is to be predicted, and how the two are compared, as the
-// motion-prediction papers do it (SPEC section 7).
+// The protocol of the completion error (Lin & Amer, Table 3), that of the motion-prediction papers (Martinez,
+// Black & Romero 2017; see docs/evaluation.md).
 #pragma once
 #include <algorithm>
 #include <array>
@@ -19,56 +19,59 @@
 
 namespace motiongan {
 
-/// The numbers of the protocol. Frames are those of the files' every second one.
+/// The constants of the protocol. Frames are counted after taking every second frame of the files.
 struct CompletionProtocol {
   static constexpr std::size_t prefix = 50;  ///< frames given
   static constexpr std::size_t future = 25;  ///< frames to predict
-  static constexpr std::size_t tests = 8;    ///< of each action
+  static constexpr std::size_t tests = 8;    ///< tests of each action
   static constexpr std::uint32_t seed = 1234567890;
-  /// Where errors are read, and what the literature calls it: milliseconds at 25 frames per second.
+  /// The predicted frames (from 0) at which errors are measured, and their times in the literature:
+  /// milliseconds at 25 Hz.
   static constexpr std::array<std::size_t, 6> measured{1, 3, 7, 9, 13, 24};
   static constexpr std::array<int, 6> milliseconds{80, 160, 320, 400, 560, 1000};
 };
 
-/// Errors at CompletionProtocol::measured; NaN where there is none.
+/// Errors at CompletionProtocol::measured; NaN where not measured.
 using CompletionErrors = std::array<double, CompletionProtocol::measured.size()>;
 
-/// A file's every second frame, normalised.
+/// Every second frame of a file, normalised.
 struct CompletionClip {
   std::string id;
-  std::size_t label = 0;  ///< its action, of CompletionData::classes()
+  std::size_t label = 0;  ///< its action, an index into CompletionData::classes()
   std::size_t frames = 0;
   std::vector<float> poses;  ///< [frames, dof]
 };
 
-/// A piece of a test file: what is given of it and what follows.
+/// A test: a prefix from a test file and the frames that follow it.
 struct CompletionTest {
-  std::size_t action = 0;     ///< of CompletionData::actions()
-  std::size_t label = 0;      ///< the same action, of CompletionData::classes()
+  std::size_t action = 0;     ///< index into CompletionData::actions()
+  std::size_t label = 0;      ///< the same action as an index into CompletionData::classes()
   std::string file;           ///< id of the clip
-  std::size_t start = 0;      ///< first frame given, of the file's every second ones
+  std::size_t start = 0;      ///< first frame of the prefix, after taking every second frame
   std::vector<float> prefix;  ///< [50, dof], normalised
   std::vector<double> truth;  ///< [75, columns], exponential maps: the prefix and the 25 frames after it
 };
 
-/// The training clips and the tests of a collection.
+/// The training clips and the tests of a collection of exponential-map text.
 ///
 /// Models may be trained on more actions than are tested.
 ///
-/// Mean and deviation are those of all rows of the training files, before every second one is taken;
-/// dimensions that deviate by less than 1e-4 are dropped, and are their mean in truth and predictions alike.
+/// Mean and standard deviation are over all rows of the training files, before every second one is taken.
+/// Channels with a standard deviation below 1e-4 are dropped; they are restored as their mean in ground truth
+/// and predictions alike.
 class CompletionData {
  public:
-  /// Error if a test file is too short for the protocol, or nothing moves.
+  /// Throws Error if a test file is too short for the protocol, or if every channel is constant.
   explicit CompletionData(const motion::ExpmapCollection& files)
       : layout_(files.layout), columns_(files.columns), actions_(files.actions), classes_(files.classes) {
     require(columns_ > 6, "the files have ", columns_,
-            " numbers a line; the first six are not measured, expected more");
+            " numbers per line, expected more than 6 (the first six are not measured)");
     std::vector<double> rows;
     for (const motion::ExpmapClip& clip : files.train)
       rows.insert(rows.end(), clip.text.values.begin(), clip.text.values.end());
     normalizer_ = motion::Normalizer::fit(rows, columns_);
-    require(dof() > 0, "no number of the training files changes by 1e-4 or more: nothing moves");
+    require(dof() > 0,
+            "no column of the training files has a standard deviation of 1e-4 or more: nothing moves");
     for (const motion::ExpmapClip& clip : files.train) {
       const std::vector<double> poses = every_second(clip.text);
       train_.push_back({clip.id, label_of(clip.action), poses.size() / columns_,
@@ -78,12 +81,12 @@ class CompletionData {
   }
 
   motion::ExpmapLayout layout() const { return layout_; }
-  const std::vector<std::string>& actions() const { return actions_; }  ///< tested
-  const std::vector<std::string>& classes() const { return classes_; }  ///< that models tell apart
+  const std::vector<std::string>& actions() const { return actions_; }  ///< the actions that are tested
+  const std::vector<std::string>& classes() const { return classes_; }  ///< the actions of the training clips
   const motion::Normalizer& normalizer() const { return normalizer_; }
-  std::size_t columns() const { return columns_; }              ///< numbers of a line
-  std::size_t dof() const { return normalizer_.kept_dof(); }    ///< numbers of a frame that models see
-  double rate() const { return motion::rate_of(layout_) / 2; }  ///< frames per second that models see
+  std::size_t columns() const { return columns_; }              ///< numbers per line of the files
+  std::size_t dof() const { return normalizer_.kept_dof(); }    ///< channels of a model's pose
+  double rate() const { return motion::rate_of(layout_) / 2; }  ///< frame rate of the models, Hz
   const std::vector<CompletionClip>& train() const { return train_; }
   const std::vector<CompletionTest>& tests() const { return tests_; }  ///< eight of each action, in order
 
@@ -94,19 +97,20 @@ class CompletionData {
                                                   [&](const CompletionClip& c) { return c.label == label; }));
   }
 
-  /// Milliseconds after the prefix at which measured frame `m` really stands: 80 to 1000 at 25 frames per
-  /// second, less than half as much for CMU files, which have 60.
+  /// The true time of measured frame `m`, in milliseconds after the prefix: 80 to 1000 at Human3.6M's 25 Hz,
+  /// but 33 to 417 for the CMU text, whose rate is 60 Hz.
   double true_milliseconds(std::size_t m) const {
     return 1000 * static_cast<double>(CompletionProtocol::measured.at(m) + 1) / rate();
   }
 
-  /// Errors of a prediction [25, dof], normalised. Both are turned into Euler angles; the root's (the first
-  /// six numbers) are left out, and angles that deviate by 1e-4 or less in the truth: over the 25 frames to
-  /// predict for Human3.6M, over all 75 for CMU.
+  /// The errors of a normalised prediction [25, dof], in radians: Euclidean distance between Euler angles.
+  /// Left out are the root (the first six columns) and angles whose standard deviation in the ground truth is
+  /// 1e-4 or less, over the 25 frames to predict for Human3.6M and over all 75 for CMU. Throws Error if the
+  /// size is wrong.
   CompletionErrors errors(const CompletionTest& test, std::span<const float> prediction) const {
     using P = CompletionProtocol;
     require(prediction.size() == P::future * dof(), "a prediction has ", prediction.size(),
-            " numbers, expected ", P::future, " frames x ", dof());
+            " values, expected ", P::future, " frames x ", dof(), " dof");
     const std::vector<double> predicted = normalizer_.denormalize(prediction);
     const std::size_t before = layout_ == motion::ExpmapLayout::cmu ? P::prefix : 0;
     std::vector<double> truth, made;
@@ -135,7 +139,7 @@ class CompletionData {
     return out;
   }
 
-  /// The eight tests of an action, by its own fresh generator: Human3.6M's two files in turn.
+  /// Draws the eight tests of an action with a newly seeded generator, alternating between its files.
   void draw_tests(const motion::ExpmapCollection& files, std::size_t action) {
     using P = CompletionProtocol;
     const bool cmu = layout_ == motion::ExpmapLayout::cmu;
@@ -150,7 +154,7 @@ class CompletionData {
     NumpyRandom random(P::seed);
     for (std::size_t i = 0; i < P::tests; ++i) {
       const std::size_t c = i % clips.size(), frames = poses[c].size() / columns_;
-      // 100 frames are kept free after a Human3.6M prefix, whatever is predicted.
+      // The protocol leaves 100 frames after a Human3.6M prefix, however many are predicted.
       const std::size_t low = cmu ? 0 : 16, room = cmu ? P::prefix + P::future : P::prefix + 100;
       require(frames > low + room, clips[c]->path.string(), " has ", clips[c]->text.frames,
               " frames, expected at least ", 2 * (low + room) + 1, " to draw tests from");
@@ -174,7 +178,7 @@ class CompletionData {
   std::vector<CompletionTest> tests_;
 };
 
-/// Errors of each test, averaged over the tests of each action, [actions].
+/// Averages the errors [tests] over the tests of each action: [actions]. Throws Error if the size is wrong.
 inline std::vector<CompletionErrors> mean_by_action(const CompletionData& data,
                                                     std::span<const CompletionErrors> errors) {
   require(errors.size() == data.tests().size(), "found errors of ", errors.size(), " tests, expected ",
@@ -186,8 +190,7 @@ inline std::vector<CompletionErrors> mean_by_action(const CompletionData& data,
   return out;
 }
 
-/// Errors by action of holding the last frame that is given: zero velocity, the baseline that is hard to
-/// beat.
+/// The errors by action of the zero-velocity baseline, which holds the last frame of the prefix.
 inline std::vector<CompletionErrors> zero_velocity_errors(const CompletionData& data) {
   std::vector<CompletionErrors> all;
   for (const CompletionTest& test : data.tests()) {

@@ -1,4 +1,4 @@
-// Table 3: rows of completion errors, the published ones beside them, as text files.
+// The table of completion errors (Lin & Amer, Table 3) with the published rows, as CSV, Markdown and JSON.
 #pragma once
 #include <cmath>
 #include <cstddef>
@@ -13,13 +13,14 @@
 
 namespace motiongan {
 
-/// A line of every action's table.
+/// The errors of one model.
 struct CompletionRow {
   std::string name;
-  std::vector<CompletionErrors> by_action;  ///< [actions]; NaN where there is none
+  std::vector<CompletionErrors> by_action;  ///< [actions]; NaN where not available
   bool published = false;                   ///< from the paper's Table 3
-  std::size_t iterations = 0;               ///< of its training; 0: none, or not known
+  std::size_t iterations = 0;               ///< of its training; 0: not trained, or not known
 
+  /// Whether there is an error for this action at any time.
   bool has(std::size_t action) const {
     for (const double error : by_action.at(action))
       if (!std::isnan(error)) return true;
@@ -27,7 +28,7 @@ struct CompletionRow {
   }
 };
 
-/// Means over all actions; NaN where one of them has none.
+/// The mean over all actions; NaN where any action is NaN.
 inline CompletionErrors mean_over_actions(const CompletionRow& row) {
   CompletionErrors out{};
   for (const CompletionErrors& errors : row.by_action)
@@ -36,8 +37,8 @@ inline CompletionErrors mean_over_actions(const CompletionRow& row) {
   return out;
 }
 
-/// The rows of the paper's Table 3 (SPEC section 8): Human3.6M at 80, 160, 320 and 400 ms, NaN for other
-/// times and for actions that are not in it. Rows without any of the actions are left out.
+/// The rows of Table 3 (Lin & Amer): Human3.6M at 80, 160, 320 and 400 ms; NaN at other times and for actions
+/// that the paper does not list. Empty if it lists none of the actions.
 inline std::vector<CompletionRow> published_completion_rows(const std::vector<std::string>& actions) {
   struct Published {
     const char* name;
@@ -82,26 +83,26 @@ inline std::vector<CompletionRow> published_completion_rows(const std::vector<st
   return out;
 }
 
-/// All rows, and what they are rows of.
+/// A table of completion errors.
 struct CompletionTable {
   motion::ExpmapLayout layout = motion::ExpmapLayout::h36m;
   std::vector<std::string> actions;
-  CompletionErrors true_milliseconds{};  ///< of CompletionProtocol::milliseconds
+  CompletionErrors true_milliseconds{};  ///< true times of CompletionProtocol::milliseconds
   std::vector<CompletionRow> rows;
 
-  /// Without rows yet; the published ones are of Human3.6M and stand in its table only.
+  /// A table without rows. The published rows are for Human3.6M only.
   explicit CompletionTable(const CompletionData& data) : layout(data.layout()), actions(data.actions()) {
     for (std::size_t m = 0; m < true_milliseconds.size(); ++m)
       true_milliseconds[m] = data.true_milliseconds(m);
   }
 
-  /// Whether the literature's names of the times are not the true ones.
+  /// Whether the times in the literature differ from the true times.
   bool times_differ() const {
     return std::abs(true_milliseconds[0] - CompletionProtocol::milliseconds[0]) > 1;
   }
 };
 
-/// "0.39", or a dash where there is none.
+/// "0.39", or "-" for NaN.
 inline std::string error_text(double error, int decimals = 2) {
   if (std::isnan(error)) return "-";
   char text[64];
@@ -109,8 +110,8 @@ inline std::string error_text(double error, int decimals = 2) {
   return text;
 }
 
-/// A line for each number: action ("mean" for the mean over actions), model, source ("measured" or
-/// "published"), iterations, milliseconds (the literature's name), true_milliseconds, error.
+/// CSV with a line for each error: action ("mean" for the mean over actions), model, source ("measured" or
+/// "published"), iterations, milliseconds (as in the literature), true_milliseconds, error.
 inline std::string completion_csv(const CompletionTable& table) {
   std::string out = "action,model,source,iterations,milliseconds,true_milliseconds,error\n";
   const auto lines = [&](const std::string& action, const CompletionRow& row,
@@ -128,7 +129,7 @@ inline std::string completion_csv(const CompletionTable& table) {
   return out;
 }
 
-/// A Markdown table for each action and one for their mean. `notes` stand in front, a paragraph each.
+/// Markdown: `notes`, a paragraph each, then a table for each action and one for their mean.
 inline std::string completion_markdown(const CompletionTable& table, const std::vector<std::string>& notes) {
   std::string out = concat("# Completion error, ", name_of(table.layout), "\n");
   for (const std::string& note : notes) out += "\n" + note + "\n";
@@ -159,31 +160,32 @@ inline std::string completion_markdown(const CompletionTable& table, const std::
   return out;
 }
 
-/// {"layout", "milliseconds", "true_milliseconds", "actions", "rows": [{"model", "source", "iterations",
-/// "errors": {action: [6]}, "mean": [6]}]}; null where there is no error.
+/// JSON: {"layout", "milliseconds", "true_milliseconds", "actions", "rows": [{"model", "source",
+/// "iterations", "errors": {action: [6]}, "mean": [6]}]}; NaN is written as null.
 inline nlohmann::json completion_json(const CompletionTable& table) {
-  const auto list = [](const CompletionErrors& errors) {
+  const auto list = [](std::span<const double> values) {
     nlohmann::json out = nlohmann::json::array();
-    for (const double error : errors)
-      out.push_back(std::isnan(error) ? nlohmann::json() : nlohmann::json(error));
+    for (const double value : values) out.push_back(std::isnan(value) ? nlohmann::json() : nlohmann::json(value));
     return out;
   };
-  nlohmann::json rows = nlohmann::json::array();
+  nlohmann::json out, rows = nlohmann::json::array();
   for (const CompletionRow& row : table.rows) {
-    nlohmann::json errors = nlohmann::json::object();
+    nlohmann::json one, errors = nlohmann::json::object();
     for (std::size_t a = 0; a < table.actions.size(); ++a)
       if (row.has(a)) errors[table.actions[a]] = list(row.by_action[a]);
-    rows.push_back({{"model", row.name},
-                    {"source", row.published ? "published" : "measured"},
-                    {"iterations", row.iterations},
-                    {"errors", errors},
-                    {"mean", list(mean_over_actions(row))}});
+    one["model"] = row.name;
+    one["source"] = std::string(row.published ? "published" : "measured");
+    one["iterations"] = row.iterations;
+    one["errors"] = std::move(errors);
+    one["mean"] = list(mean_over_actions(row));
+    rows.push_back(std::move(one));
   }
-  return {{"layout", name_of(table.layout)},
-          {"milliseconds", CompletionProtocol::milliseconds},
-          {"true_milliseconds", table.true_milliseconds},
-          {"actions", table.actions},
-          {"rows", rows}};
+  out["layout"] = std::string(name_of(table.layout));
+  for (const int ms : CompletionProtocol::milliseconds) out["milliseconds"].push_back(ms);
+  out["true_milliseconds"] = list(table.true_milliseconds);
+  out["actions"] = table.actions;
+  out["rows"] = std::move(rows);
+  return out;
 }
 
 }  // namespace motiongan

@@ -1,5 +1,5 @@
-// The first paper's comparison: generators, critics, validation, input shift and final cut, in every
-// combination (Lin & Amer, Tables 2 and S1; SPEC 7).
+// The ablation study of Lin & Amer (Tables 2 and S1): generators, critics, validation, input shift and final
+// cut in every combination.
 #pragma once
 #include <optional>
 #include <string>
@@ -12,16 +12,16 @@
 
 namespace motiongan {
 
-/// A row of the comparison.
+/// A variant in the study.
 struct DvganVariant {
   GeneratorKind generator = GeneratorKind::cnn;
   CriticKind critic = CriticKind::cnn;
-  Validation validation = Validation::dense;  ///< of the CNN critic; the RNN critic has none
+  Validation validation = Validation::dense;  ///< of the CNN critic; ignored for the RNN critic
   bool shift = false, cut = false;
 
   bool operator==(const DvganVariant&) const = default;
 
-  /// "cnn-cnn-dense-shift-cut": generator, critic, the CNN critic's validation, then what is on.
+  /// Such as "cnn-cnn-dense-shift-cut": generator, critic, the CNN critic's validation, then what is on.
   std::string name() const {
     std::string out = concat(name_of(generator), "-", name_of(critic));
     if (critic == CriticKind::cnn) out += concat("-", validation_name());
@@ -34,11 +34,13 @@ struct DvganVariant {
     return critic == CriticKind::rnn ? "" : name_of(validation);
   }
 
+  /// `options` with this variant's generator and final cut.
   DvganOptions model(DvganOptions options) const {
     options.generator = generator;
     options.final_cut = cut;
     return options;
   }
+  /// `options` with this variant's critic, validation and input shift.
   DvganTrainOptions training(DvganTrainOptions options) const {
     options.critic.critic = critic;
     if (critic == CriticKind::cnn) options.critic.validation = validation;
@@ -46,7 +48,7 @@ struct DvganVariant {
     return options;
   }
 
-  /// The same row of one of the paper's tables; none where it does not stand there.
+  /// This variant's row in one of the paper's tables; null if the table does not list it.
   const paper::GeneratorRow* find(std::span<const paper::GeneratorRow> table) const {
     for (const paper::GeneratorRow& row : table)
       if (row.generator == name_of(generator) && row.critic == name_of(critic) &&
@@ -56,7 +58,7 @@ struct DvganVariant {
   }
 };
 
-/// The row of the paper's table.
+/// The variant of a row of the paper's tables.
 inline DvganVariant variant_of(const paper::GeneratorRow& row) {
   return {.generator = enum_from<GeneratorKind>(row.generator, "generator"),
           .critic = enum_from<CriticKind>(row.critic, "critic"),
@@ -66,7 +68,8 @@ inline DvganVariant variant_of(const paper::GeneratorRow& row) {
           .cut = row.cut};
 }
 
-/// Table 2's eight rows in its order, and what Table S1 adds: both generators against the RNN critic.
+/// The eight rows of Table 2 in its order, then those that Table S1 adds: both generators with the RNN
+/// critic.
 inline std::vector<DvganVariant> paper_dvgan_variants() {
   std::vector<DvganVariant> out;
   const auto add = [&](const paper::GeneratorRow& row) {
@@ -78,7 +81,7 @@ inline std::vector<DvganVariant> paper_dvgan_variants() {
   return out;
 }
 
-/// All 32: two generators, four ways to judge, with and without shift and cut.
+/// All 32 combinations: two generators, four critics, with and without shift and cut.
 inline std::vector<DvganVariant> all_dvgan_variants() {
   std::vector<DvganVariant> out;
   for (const GeneratorKind generator : {GeneratorKind::cnn, GeneratorKind::rnn})
@@ -90,7 +93,7 @@ inline std::vector<DvganVariant> all_dvgan_variants() {
   return out;
 }
 
-/// The variant of a name(). Error, saying how they are made, for another one.
+/// The variant with this name(). Throws Error, explaining the names, if there is none.
 inline DvganVariant dvgan_variant(std::string_view name) {
   for (const DvganVariant& variant : all_dvgan_variants())
     if (variant.name() == name) return variant;
@@ -99,19 +102,19 @@ inline DvganVariant dvgan_variant(std::string_view name) {
               "-shift and -cut where they are on, as cnn-cnn-dense-shift-cut or rnn-rnn");
 }
 
-/// One training of the comparison, measured.
+/// One training run of a variant, evaluated.
 struct DvganRun {
   std::uint64_t seed = 0;
   std::size_t iterations = 0;
   ModelEvaluation evaluation;
 };
 
-/// A variant's trainings.
+/// All training runs of a variant.
 struct DvganAblationRow {
   DvganVariant variant;
   std::vector<DvganRun> runs;
 
-  /// Of a number of each run.
+  /// Mean and standard deviation over the runs of measure(evaluation).
   template <class Measure>
   MeanStd over_seeds(const Measure& measure) const {
     std::vector<double> values;
@@ -120,12 +123,13 @@ struct DvganAblationRow {
   }
 };
 
-/// The columns of the comparison: a name, and the number of a set of motions and its FID.
+/// A column of the study's table: its name, and a function of a motion set's measures and its FID.
 struct AblationColumn {
   std::string_view name;
   int decimals = 1;
   double (*measure)(const MotionSetMeasures& set, double distance);
 };
+/// All columns, in the order of the table.
 inline std::span<const AblationColumn> ablation_columns() {
   using Set = const MotionSetMeasures&;
   static constexpr AblationColumn all[] = {
@@ -140,8 +144,8 @@ inline std::span<const AblationColumn> ablation_columns() {
   return all;
 }
 
-/// The difference b - a of a number, run by run of equal seeds: what the spread of a single row hides.
-/// A count of 0 where no seed is in both.
+/// Mean and standard deviation of the difference b - a of a measure over runs with equal seeds. Pairing
+/// removes the variation between seeds that both rows share. The count is 0 if no seed is in both.
 template <class Measure>
 MeanStd paired_difference(const DvganAblationRow& a, const DvganAblationRow& b, const Measure& measure) {
   std::vector<double> differences;

@@ -1,4 +1,4 @@
-// Which pieces of the test clips the second paper's models are measured on.
+// The choice of test windows that action models are evaluated on.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -14,30 +14,31 @@
 
 namespace motiongan {
 
-/// A prior of T frames in a test clip and the frames that really followed it.
+/// A prior of T frames in a test clip, and the frames that follow it there.
 struct EvaluationWindow {
-  std::size_t clip = 0;   ///< of data.test
+  std::size_t clip = 0;   ///< index into data.test
   std::size_t start = 0;  ///< the prior's first frame
   std::size_t label = 0;
 };
 
-/// Windows for an evaluation, and what they were chosen from.
+/// The windows of an evaluation, and what they were chosen from.
 struct EvaluationWindows {
   std::size_t future = 0;  ///< real frames after each prior
   std::vector<EvaluationWindow> windows;
-  std::size_t clips = 0;               ///< test clips
-  std::size_t long_clips = 0;          ///< those of T + future frames or more; the others give no window
-  std::vector<std::size_t> per_class;  ///< windows of each class
-  std::vector<std::size_t> clips_per_class;  ///< and the clips that they are of
+  std::size_t clips = 0;               ///< number of test clips
+  std::size_t long_clips = 0;          ///< those with at least T + future frames; others give no window
+  std::vector<std::size_t> per_class;  ///< number of windows of each class
+  std::vector<std::size_t> clips_per_class;  ///< number of clips that they come from
 };
 
-/// At most `count` windows of T + `future` frames of the test clips, no two alike. Classes take turns, and in
-/// a class its clips, so that neither a common class nor a long clip decides the result. The choice is a
-/// function of the data set and the seed. Error if no test clip is long enough.
+/// Chooses at most `count` distinct windows of T + `future` frames from the test clips. It cycles through the
+/// classes, and through the clips of each class, so that neither a frequent class nor a long clip dominates
+/// the result. The choice depends only on the data set and the seed. Throws Error if no test clip is long
+/// enough, or if `count` or `future` is 0.
 inline EvaluationWindows choose_windows(const motion::ActionDataset& data, std::size_t future,
                                         std::size_t count, std::uint64_t seed = 1) {
-  require(future > 0 && count > 0, "an evaluation of ", count, " windows with ", future,
-          " frames after the prior was asked for, expected at least 1 of both");
+  require(future > 0 && count > 0, "windows is ", count, " and frames is ", future,
+          ", expected at least 1 of each");
   const std::size_t classes = data.format.classes.size(), length = data.format.frames + future;
   EvaluationWindows out;
   out.future = future;
@@ -54,7 +55,7 @@ inline EvaluationWindows choose_windows(const motion::ActionDataset& data, std::
   }
   require(out.long_clips > 0, "none of ", data.test.size(), " test clips lasts ", length,
           " frames (a prior of ", data.format.frames, " and ", future, " after it); the longest has ",
-          longest, ": compare fewer frames, or keep longer clips for testing");
+          longest, "; compare fewer frames, or keep longer clips for testing");
   for (std::size_t c = 0; c < classes; ++c) {
     const RandomKey key{.seed = seed, .stream = RandomStream::seeding, .step = static_cast<std::uint32_t>(c)};
     for (std::size_t i = clips[c].size(); i > 1; --i)

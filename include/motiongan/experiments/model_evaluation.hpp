@@ -1,5 +1,5 @@
-// A text-conditioned generator beside the real motion that it was to learn (Lin & Amer, Table 2; SPEC 7), and
-// by the measures of today.
+// Evaluation of a text-conditioned generator against real motion: inception score and retrieval (Lin & Amer,
+// Table 2), FID, diversity, multimodality and motion quality.
 #pragma once
 #include "motiongan/metrics/diversity.hpp"
 #include "motiongan/metrics/drift.hpp"
@@ -13,49 +13,50 @@
 
 namespace motiongan {
 
+/// Options of evaluate_real() and evaluate_model().
 struct ModelEvaluationOptions {
-  std::size_t descriptions = 250;  ///< K: the most popular ones of the test clips, or all there are
-  std::size_t samples = 16;        ///< motions of each description, made and real; at least 2
-  std::uint64_t seed = 1;          ///< of the motions made, and of random pairs
+  std::size_t descriptions = 250;  ///< K: the most frequent descriptions of the test clips, at most all
+  std::size_t samples = 16;        ///< motions of each description, generated and real; at least 2
+  std::uint64_t seed = 1;          ///< seed of the generated motions and of random pairs
   std::size_t diversity_pairs = 200, multimodality_pairs = 20;
   FootSkateOptions feet{};
-  double drift_seconds = 30;  ///< how long the motions last that drift is measured on; RNN generators only
-  std::size_t drift_motions = 8;  ///< how many, one for each of the most popular descriptions in turn
+  double drift_seconds = 30;      ///< length of the motions that drift is measured on; RNN generators only
+  std::size_t drift_motions = 8;  ///< their number; they cycle through the most frequent descriptions
 };
 
-/// Measures of K * samples motions, `samples` of each description, through one ranker.
+/// Measures of K * samples motions, `samples` of each description, with one ranker.
 struct MotionSetMeasures {
   std::size_t motions = 0;
   double inception_score = 0;  ///< nats, over the K descriptions
   Retrieval retrieval;         ///< of a motion's own description among the K
-  double diversity = 0;        ///< between the ranker's embeddings of length 1: 0 .. 2
-  double multimodality = 0;    ///< the same among motions of one description
+  double diversity = 0;        ///< mean distance between unit-length embeddings of the ranker, 0..2
+  double multimodality = 0;    ///< the same between motions of the same description
   MotionQuality quality;
 };
 
-/// The real motion that generators are measured against: the real-sample row, and what they all need.
+/// The real motion that generators are compared with, and its own measures.
 struct RealEvaluation {
   motion::Descriptions descriptions;  ///< of the test clips, K of them
-  std::size_t clips = 0;              ///< test clips that have one of them
-  std::vector<float> features;        ///< [K * samples, k], the first description's first
+  std::size_t clips = 0;              ///< number of test clips with one of these descriptions
+  std::vector<float> features;        ///< [K * samples, k], ordered by description
   MotionSetMeasures measures;
-  /// Of windows of the training clips from windows of the test clips, of the descriptions that both have: how
-  /// far real motion is from real motion. Not set where there are none in common.
+  /// FID between windows of training clips and of test clips, over the descriptions that both have: a
+  /// reference for the FID between real and generated motion. Not set if they have none in common.
   std::optional<FrechetDistance> training;
-  std::size_t training_descriptions = 0;  ///< so many
+  std::size_t training_descriptions = 0;  ///< number of descriptions in common
 };
 
-/// A generator's row.
+/// The measures of a generator.
 struct ModelEvaluation {
   MotionSetMeasures measures;
-  FrechetDistance distance;  ///< FID: from the real windows, in the ranker's embedding
-  /// Mean over the long motions; not set for CNN generators, which make windows alone.
+  FrechetDistance distance;  ///< FID to the real windows, in the ranker's embedding
+  /// Mean over the long motions; not set for CNN generators, which cannot make them.
   std::optional<DriftSummary> drift;
 };
 
 namespace model_evaluation_detail {
 
-/// `samples` windows of the clips, in turn and evenly spread over each.
+/// Appends `samples` windows, distributed over the clips and evenly spaced in each.
 inline void add_windows(const motion::Dataset& data, const std::vector<const motion::DatasetClip*>& clips,
                         std::size_t samples, std::vector<motion::Motion>& out) {
   std::vector<float> window(data.format.frames * data.format.dof());
@@ -78,7 +79,8 @@ inline std::vector<std::vector<const motion::DatasetClip*>> clips_of(
   return out;
 }
 
-/// `features` are those of `motions`, `samples` of each description.
+/// Measures `motions`, options.samples of each description, with their `features`. right[i]: the descriptions
+/// that are correct for motion i.
 inline MotionSetMeasures measure_set(const Ranker& ranker, const std::vector<std::string>& descriptions,
                                      std::span<const motion::Motion> motions, std::span<const float> features,
                                      const std::vector<std::vector<std::size_t>>& right,
@@ -97,7 +99,7 @@ inline MotionSetMeasures measure_set(const Ranker& ranker, const std::vector<std
   return out;
 }
 
-/// The summaries' mean.
+/// The mean of the summaries.
 inline DriftSummary mean_of(std::span<const DriftSummary> all) {
   DriftSummary out = all.front();
   const auto add = [&](DriftRow DriftSummary::*part) {
@@ -117,23 +119,21 @@ inline DriftSummary mean_of(std::span<const DriftSummary> all) {
 
 }  // namespace model_evaluation_detail
 
-/// Real windows of the test clips: `samples` of each description, so that descriptions count alike, as they
-/// do among the motions that a generator is asked for; a description's clips take turns, and windows of one
-/// clip may overlap. The windows are those of `data` (its frames and rate), and go through its format as
-/// generated motion does. Whatever clips a window's description has in common with others, all descriptions
-/// of its own clip are right for it.
+/// Measures real windows of the test clips, options.samples of each description, so that descriptions have
+/// equal weight, as in generated motion. The samples of a description are distributed over its clips; windows
+/// of a clip may overlap. Windows have the frames and rate of `data` and are encoded and decoded with its
+/// format, as generated motion is. For retrieval, all descriptions of a window's clip are correct.
 ///
-/// Do this once for all generators of one data set. Error if there are no test clips, fewer than 2 samples
-/// were asked for, or the ranker needs longer motions.
+/// The result can be reused for all generators of a data set. Throws Error if there are no test clips, if
+/// `samples` is below 2 or `descriptions` is 0, or if the windows are too short for the ranker.
 inline RealEvaluation evaluate_real(const Ranker& ranker, const motion::Dataset& data,
                                     const ModelEvaluationOptions& options = {}) {
   namespace detail = model_evaluation_detail;
   require(!data.test.empty(), "there are no test clips to evaluate on; lower the training share");
   require(
-      options.descriptions > 0 && options.samples >= 2, "an evaluation over ", options.descriptions,
-      " descriptions with ", options.samples,
-      " motions of each was asked for, expected at least 1 and 2: one motion says nothing of how much they "
-      "differ");
+      options.descriptions > 0 && options.samples >= 2, "descriptions is ", options.descriptions,
+      " and samples is ", options.samples,
+      ", expected at least 1 and 2 (multimodality needs two motions of a description)");
   RealEvaluation out;
   out.descriptions = motion::distinct_descriptions(data.test).most_popular(options.descriptions);
   for (const auto& of : out.descriptions.of_clip) out.clips += of.empty() ? 0 : 1;
@@ -143,7 +143,7 @@ inline RealEvaluation evaluate_real(const Ranker& ranker, const motion::Dataset&
   for (std::size_t d = 0; d < clips.size(); ++d) {
     detail::add_windows(data, clips[d], options.samples, motions);
     for (std::size_t c = 0; c < clips[d].size(); ++c) {
-      // Its own description comes first: it counts among that one's.
+      // The first is the description that the window is counted under.
       std::vector<std::size_t> of{d};
       for (const std::size_t other :
            out.descriptions.of_clip[static_cast<std::size_t>(clips[d][c] - data.test.data())])
@@ -156,7 +156,7 @@ inline RealEvaluation evaluate_real(const Ranker& ranker, const motion::Dataset&
   out.features = ranker.features(motions);
   out.measures = detail::measure_set(ranker, out.descriptions.texts, motions, out.features, right, options);
 
-  // The descriptions that training clips have too, and windows of those.
+  // Windows of training clips with the same descriptions.
   const motion::Descriptions trained = motion::distinct_descriptions(data.train);
   const auto training_clips = detail::clips_of(data.train, trained);
   std::map<std::vector<std::string>, std::size_t> by_words;
@@ -177,21 +177,21 @@ inline RealEvaluation evaluate_real(const Ranker& ranker, const motion::Dataset&
   return out;
 }
 
-/// Asks the generator for `samples` motions of each description of `real` and measures them as the real
-/// windows were; `options` must be those of evaluate_real. Motion of another rate than the ranker's is
-/// resampled. Error where the ranker cannot take the generator's motion: another skeleton, or fewer frames
-/// than its windows at its rate.
+/// Generates options.samples motions of each description of `real` and measures them like the real windows;
+/// `options` must be those given to evaluate_real(). Motion is resampled to the ranker's frame rate. Throws
+/// Error if the ranker or the options differ from those of `real`, or if the ranker cannot take the motion:
+/// another skeleton, or fewer frames than its windows.
 inline ModelEvaluation evaluate_model(const Dvgan& model, const Ranker& ranker, const RealEvaluation& real,
                                       const ModelEvaluationOptions& options = {}) {
   namespace detail = model_evaluation_detail;
   const std::size_t count = real.descriptions.size() * options.samples;
   require(count > 0 && real.features.size() == count * ranker.options().hidden, "the real motion has ",
-          real.features.size(), " numbers of features, expected ", count, " motions of ",
-          ranker.options().hidden, "; evaluate_real() it with the same ranker and options");
+          real.features.size(), " feature values, expected ", count, " motions x ",
+          ranker.options().hidden, "; call evaluate_real() with the same ranker and options");
   std::vector<motion::Motion> motions;
   std::vector<std::vector<std::size_t>> right;
   for (std::size_t d = 0; d < real.descriptions.size(); ++d) {
-    // Sample numbers go on from one description to the next, so that no two share their noise.
+    // Sample numbers continue from one description to the next, so that no two motions share their noise.
     const GenerateOptions wanted{
         .count = options.samples, .seed = options.seed, .first_sample = d * options.samples};
     for (motion::Motion& made : model.generate(real.descriptions.texts[d], wanted)) {
@@ -222,7 +222,7 @@ inline ModelEvaluation evaluate_model(const Dvgan& model, const Ranker& ranker, 
   return out;
 }
 
-/// Both at once, for a single generator.
+/// evaluate_real() and evaluate_model() in one call, for a single generator.
 inline ModelEvaluation evaluate_model(const Dvgan& model, const Ranker& ranker, const motion::Dataset& data,
                                       const ModelEvaluationOptions& options = {}) {
   return evaluate_model(model, ranker, evaluate_real(ranker, data, options), options);

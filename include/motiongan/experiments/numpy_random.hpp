@@ -1,4 +1,4 @@
-// numpy's old random numbers, for protocols that are written in terms of them (SPEC section 7, item 2).
+// NumPy's legacy random integers, which the motion-prediction protocol draws its tests with.
 #pragma once
 #include <cstdint>
 #include <random>
@@ -7,17 +7,15 @@
 
 namespace motiongan {
 
-/// The whole numbers that numpy's `RandomState(seed)` draws with `randint(low, high)`: the same ones in the
-/// same order. The generator is MT19937, seeded as its authors did (init_genrand, which std::mt19937 does
-/// too); a draw takes as many low bits of the next number as the range needs, and draws again while they
-/// are out of range.
+/// Reproduces the sequence of NumPy's `RandomState(seed).randint(low, high)`: MT19937, seeded with
+/// init_genrand as std::mt19937 is, and masked rejection sampling: the low bits that the range needs, redrawn
+/// while out of range.
 class NumpyRandom {
  public:
   explicit NumpyRandom(std::uint32_t seed) : engine_(seed) {}
 
-  /// A whole number of [low, high), high itself left out. A range of one number takes nothing from the
-  /// generator, one of more than 2^32 takes two of its numbers for each try, the upper half first. Error for
-  /// an empty range.
+  /// An integer in [low, high). A range of one value draws nothing from the generator; a range of more than
+  /// 2^32 values draws two words per try, the upper half first. Throws Error if the range is empty.
   std::int64_t randint(std::int64_t low, std::int64_t high) {
     require(low < high, "randint(", low, ", ", high, "): the range is empty, expected low < high");
     const std::uint64_t largest = static_cast<std::uint64_t>(high) - static_cast<std::uint64_t>(low) - 1;

@@ -1,5 +1,5 @@
-// The figures of the first paper (Lin & Amer, Tables 1, 2 and S1), to stand beside ours. They are of other
-// clips, other captions and other rankers: a different K, or different data, makes them not comparable.
+// The published results of Lin & Amer (Tables 1, 2 and S1), for comparison. They were measured with other
+// clips, captions and rankers; with another K or other data they are not comparable.
 #pragma once
 #include <array>
 #include <span>
@@ -9,8 +9,8 @@
 
 namespace motiongan::paper {
 
-/// A row of Table 1: R@k of a ranker on held-out clips, in per cent; K = 250 descriptions of CMU, 15 actions
-/// of Human3.6M.
+/// A row of Table 1: R@1, 3, 5 and 10 of a ranker on held-out clips, in percent, among K = 250 descriptions
+/// of CMU or 15 actions of Human3.6M.
 struct RankerRow {
   std::string_view name;
   Recall cmu, h36m;
@@ -20,7 +20,7 @@ inline constexpr std::array<RankerRow, 3> table1{
      {"CNN ranker", {36.5, 45.6, 49.1, 53.8}, {44.5, 69.4, 82.6, 96.4}},
      {"RNN ranker", {39.7, 48.3, 51.4, 58.7}, {47.2, 73.9, 85.2, 97.0}}}};
 
-/// A row of Table 2: the inception score, nats, and R@k of generated motion, in per cent.
+/// A row of Table 2: inception score in nats, and R@1, 3, 5 and 10 of generated motion in percent.
 struct GeneratorRow {
   std::string_view generator, critic;  ///< "cnn" or "rnn"
   std::string_view validation;         ///< of the CNN critic
@@ -49,7 +49,7 @@ inline constexpr std::array<GeneratorRow, 8> table2_h36m{
      {"rnn", "cnn", "dense", true, true, 2.36, {88.5, 98.3, 99.9, 100}}}};
 inline constexpr GeneratorRow real_h36m{"real", "", "", false, false, 1.48, {47.2, 73.9, 85.2, 97.0}};
 
-/// Table S1, Human3.6M: generators against critics.
+/// Table S1, Human3.6M: combinations of generators and critics.
 inline constexpr std::array<GeneratorRow, 4> table_s1_h36m{
     {{"cnn", "rnn", "", false, false, 1.87, {64.7, 87.4, 93.4, 99.3}},
      {"rnn", "rnn", "", false, false, 1.85, {70.8, 86.7, 100, 100}},

@@ -1,4 +1,4 @@
-// A ranker on clips that it was not trained on (Lin & Amer, Table 1; SPEC 7).
+// Evaluation of a ranker on held-out clips (Lin & Amer, Table 1).
 #pragma once
 #include "motiongan/metrics/inception_score.hpp"
 #include "motiongan/metrics/retrieval.hpp"
@@ -7,25 +7,25 @@
 
 namespace motiongan {
 
+/// Options of evaluate_ranker().
 struct RankerEvaluationOptions {
-  std::size_t descriptions = 250;    ///< K: the most popular ones of the test clips, or all there are
-  std::size_t windows_per_clip = 8;  ///< evenly spread; a clip counts as much as any other
+  std::size_t descriptions = 250;    ///< K: the most frequent descriptions of the test clips, at most all
+  std::size_t windows_per_clip = 8;  ///< evenly spaced; the same number for each clip
 };
 
-/// Real windows and what they are: of the test clips that have one of the K descriptions.
+/// Real windows of the test clips that have one of the K descriptions.
 struct RealWindows {
   motion::Descriptions descriptions;            ///< of the test clips, K of them
   std::vector<motion::Motion> motions;          ///< windows_per_clip of each clip
-  std::vector<std::vector<std::size_t>> right;  ///< the descriptions that are right for each
-  std::size_t clips = 0;                        ///< how many they are of
+  std::vector<std::vector<std::size_t>> right;  ///< the correct descriptions of each window
+  std::size_t clips = 0;                        ///< number of clips that they come from
 };
 
-/// Error if there are no test clips or windows were not asked for.
+/// The windows to evaluate a ranker on. Throws Error if there are no test clips or an option is 0.
 inline RealWindows real_windows(const motion::Dataset& data, const RankerEvaluationOptions& options = {}) {
   require(!data.test.empty(), "there are no test clips to evaluate on; lower the training share");
-  require(options.descriptions > 0 && options.windows_per_clip > 0, "an evaluation over ",
-          options.descriptions, " descriptions with ", options.windows_per_clip,
-          " windows a clip, expected at least 1 of both");
+  require(options.descriptions > 0 && options.windows_per_clip > 0, "descriptions is ", options.descriptions,
+          " and windows_per_clip is ", options.windows_per_clip, ", expected at least 1 of each");
   RealWindows out;
   out.descriptions = motion::distinct_descriptions(data.test).most_popular(options.descriptions);
   std::vector<float> window(data.format.frames * data.format.dof());
@@ -42,15 +42,17 @@ inline RealWindows real_windows(const motion::Dataset& data, const RankerEvaluat
   return out;
 }
 
+/// The measures of a ranker on n real windows.
 struct RankerEvaluation {
   RealWindows real;
-  std::vector<float> features;  ///< of the windows, [n, k], of length 1
+  std::vector<float> features;  ///< unit-length embeddings of the windows, [n, k]
   std::vector<float> scores;    ///< [n, K]
   Retrieval retrieval;
   double inception_score = 0;  ///< of the real windows, nats
 };
 
-/// How well the ranker finds the descriptions of the test clips.
+/// Measures how well the ranker retrieves the descriptions of the test clips. Throws Error as real_windows(),
+/// or if the windows do not fit the ranker.
 inline RankerEvaluation evaluate_ranker(const Ranker& ranker, const motion::Dataset& data,
                                         const RankerEvaluationOptions& options = {}) {
   RankerEvaluation out;

@@ -188,8 +188,23 @@ inline SafeTensors SafeTensors::read(const std::filesystem::path& path) {
 
 inline void SafeTensors::write(const std::filesystem::path& path) const {
   const std::string where = path.string();
-  nlohmann::ordered_json header = nlohmann::ordered_json::object();
-  if (!metadata.empty()) header["__metadata__"] = metadata;
+  std::string text = "{";
+  const auto add = [&](const std::string& name, const std::string& value) {
+    try {
+      text += concat(text.size() > 1 ? "," : "", nlohmann::json(name).dump(), ":", value);
+    } catch (const nlohmann::json::exception& error) {
+      throw Error(where, ": the name of a tensor is not UTF-8: ", error.what());
+    }
+  };
+  if (!metadata.empty()) {
+    nlohmann::json values;
+    for (const auto& [key, value] : metadata) values[key] = value;
+    try {
+      add("__metadata__", values.dump());
+    } catch (const nlohmann::json::exception& error) {
+      throw Error(where, ": the metadata is not UTF-8: ", error.what());
+    }
+  }
   std::size_t at = 0;
   for (const auto& [name, tensor] : tensors) {
     require(name != "__metadata__", where, ": no tensor can be called __metadata__");
@@ -198,15 +213,13 @@ inline void SafeTensors::write(const std::filesystem::path& path) const {
     require(tensor.data.size() == bytes, where, ": tensor \"", name, "\" of type ", tensor.dtype,
             " and shape ", shape_text(tensor.shape), " has ", tensor.data.size(), " bytes of data, expected ",
             bytes);
-    header[name] = {{"dtype", tensor.dtype}, {"shape", tensor.shape}, {"data_offsets", {at, at + bytes}}};
+    std::string shape;
+    for (const std::size_t n : tensor.shape) shape += (shape.empty() ? "" : ",") + std::to_string(n);
+    add(name, concat("{\"dtype\":\"", tensor.dtype, "\",\"shape\":[", shape, "],\"data_offsets\":[", at, ",",
+                     at + bytes, "]}"));
     at += bytes;
   }
-  std::string text;
-  try {
-    text = header.dump();
-  } catch (const nlohmann::json::exception& error) {
-    throw Error(where, ": a tensor's name or the metadata is not UTF-8: ", error.what());
-  }
+  text += "}";
   text.resize((text.size() + 7) / 8 * 8, ' ');  // aligns the data to 8 bytes
 
   AtomicFile file(path);

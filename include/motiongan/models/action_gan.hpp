@@ -1,10 +1,12 @@
-// Class-controlled motion, one second after another: a generator with everything that is needed to use it
-// (Malek-Podjaski & Deligianni; SPEC 5).
+// The class-conditioned motion model of Malek-Podjaski & Deligianni: a generator and the format of its
+// motion.
 #pragma once
 #include <variant>
 
 #include "motiongan/core/fields.hpp"
 #include "motiongan/core/random.hpp"
+#include "motiongan/data/action_prior.hpp"
+#include "motiongan/data/action_schedule.hpp"
 #include "motiongan/data/position_format_json.hpp"
 #include "motiongan/models/model_file.hpp"
 #include "motiongan/networks/attention_generator.hpp"
@@ -13,21 +15,22 @@
 
 namespace motiongan {
 
-/// Which network goes on from a prior.
+/// The network that continues a prior.
 enum class ActionGenerator {
-  attention,  ///< a second at once, by convolutions and self-attention, trained against a critic
-  lstm        ///< the paper's baseline: frame by frame, trained to copy
+  attention,  ///< convolutions and self-attention; T frames at once, trained against a critic
+  lstm        ///< the paper's LSTM baseline: frame by frame, trained by MSE
 };
 constexpr NameTable<ActionGenerator, 2> enum_names(ActionGenerator) {
   return {{{ActionGenerator::attention, "attention"}, {ActionGenerator::lstm, "lstm"}}};
 }
 
+/// Options of an ActionGan.
 struct ActionGanOptions {
   ActionGenerator generator = ActionGenerator::attention;
-  std::size_t hidden = 256;   ///< C
-  std::size_t noise_dim = 0;  ///< numbers of noise beside the class; the paper has none; not for the baseline
-  bool attention = true;      ///< of generator, critic and classifier
-  std::uint64_t seed = 1;     ///< of the first weights
+  std::size_t hidden = 256;   ///< C, channels of the hidden layers
+  std::size_t noise_dim = 0;  ///< noise channels next to the class; the paper: 0; the LSTM must have 0
+  bool attention = true;      ///< self-attention in generator, critic and classifier
+  std::uint64_t seed = 1;     ///< seed of the initial weights
 
   void list_fields(FieldList& list) {
     list.add(generator, {.key = "generator",
@@ -38,15 +41,23 @@ struct ActionGanOptions {
     list.add(hidden, {.key = "hidden", .help = "width of the networks", .range = Range::between(1, 65536)});
     list.add(attention, {.key = "attention", .help = "self-attention in all networks"});
     list.add(noise_dim, {.key = "noise_dim",
-                         .help = "numbers of noise next to the class; the paper: 0",
+                         .help = "noise channels next to the class; the paper: 0",
                          .range = Range::between(0, 65536),
                          .option = "--noise"});
   }
 };
 
-/// Goes on from one second of motion to the next, of a given class.
+/// Options of ActionGan::generate().
+struct ActionGenerateOptions {
+  bool with_prior = true;          ///< whether the clips begin with the T frames of the prior
+  std::uint64_t seed = 1;          ///< seed of the noise, if the model takes noise
+  std::uint32_t first_sample = 0;  ///< noise sample of the first clip; later clips count up from it
+};
+
+/// A generator of the T frames of motion of a given class that follow a prior of T frames.
 class ActionGan {
  public:
+  /// Throws Error if the format or an option is not valid.
   ActionGan(Context context, motion::PositionFormat format, const ActionGanOptions& options)
       : context_(std::move(context)),
         format_(std::move(format)),
@@ -58,51 +69,66 @@ class ActionGan {
   const ActionGanOptions& options() const { return options_; }
   bool is_baseline() const { return options_.generator == ActionGenerator::lstm; }
 
-  /// The attention generator; Error for a model of the other kind.
+  /// The attention generator. Throws Error if the model is the LSTM baseline.
   const AttentionGenerator& generator() const {
     require(!is_baseline(), "this model is the LSTM baseline: it has no attention generator");
     return std::get<AttentionGenerator>(generator_);
   }
+  /// The LSTM baseline. Throws Error if the model has an attention generator.
   const LstmBaseline& baseline() const {
     require(is_baseline(), "this model has an attention generator: it is not the LSTM baseline");
     return std::get<LstmBaseline>(generator_);
   }
 
-  /// Parameters by PyTorch's names.
+  /// The generator's parameters, under PyTorch's names.
   void list_parameters(ParameterList& list) {
     std::visit([&](auto& generator) { generator.list_parameters(list); }, generator_);
   }
 
-  /// The T frames [T, B, dof] that follow a normalised prior [T, B, dof] of class [B, Y] (one-hot); `key`
-  /// names the noise where the model has some.
+  /// The T frames [T, B, dof] that follow a prior [T, B, dof], both normalised, of classes [B, Y] (one-hot).
+  /// `key` selects the noise, if the model takes noise.
   Var forward(const Var& prior, const Var& classes, const RandomKey& key = {}) const {
     if (is_baseline()) return baseline()(prior, classes, format_.frames);
     return generator()(prior, classes, noise(prior.dim(1), key));
   }
 
-  /// Noise [B, noise_dim] of a step, or none.
+  /// The noise [B, noise_dim] that `key` selects; empty if the model takes no noise.
   Var noise(std::size_t batch, const RandomKey& key) const {
     if (options_.noise_dim == 0) return {};
     return Var::constant(random_normal(context_, key.with(RandomStream::noise), 1, batch, options_.noise_dim)
                              .reshape({batch, options_.noise_dim}));
   }
 
-  /// Writes the weights (PyTorch's names and shapes) and everything that is needed to generate, as one
-  /// safetensors file.
+  /// Generates one clip for each prior, all with the same schedule; clips have the ids of their priors. The
+  /// model makes T frames at a time. Where a segment of the schedule ends within them, the remaining frames
+  /// are discarded and the next segment continues from the last T frames kept, so that classes change exactly
+  /// where the schedule says. Throws Error if the schedule has no frames or a prior does not fit the model.
+  std::vector<motion::PositionClip> generate(const std::vector<ActionPrior>& priors,
+                                             const ActionSchedule& schedule,
+                                             const ActionGenerateOptions& options = {}) const;
+
+  /// The same with a schedule such as "walk:3s,run:5s", see parse_action_schedule().
+  /// Both are defined in motiongan/sample/action_generate.hpp.
+  std::vector<motion::PositionClip> generate(const std::vector<ActionPrior>& priors,
+                                             std::string_view schedule,
+                                             const ActionGenerateOptions& options = {}) const;
+
+  /// Writes one safetensors file with the weights (PyTorch's names and shapes), the options and the format.
   void save(const std::filesystem::path& path) { save_model(*this, path); }
 
-  /// A model that save() wrote, or the generator of a run's checkpoint. Throws Error, naming the file and what
-  /// is wrong with it, for any other.
+  /// Loads a file that save() wrote, or the generator in a checkpoint. Throws Error, naming the file and the
+  /// problem, for any other file.
   static ActionGan load(const Context& context, const std::filesystem::path& path) {
     return load_model<ActionGan>(context, path);
   }
 
-  // What model_file.hpp needs.
+  // Required by model_file.hpp.
   using Options = ActionGanOptions;
   using Format = motion::PositionFormat;
   static constexpr NameTable<ActionGenerator, 2> file_kinds{
       {{ActionGenerator::attention, "attention_generator"}, {ActionGenerator::lstm, "lstm_baseline"}}};
   static constexpr const char* part_name = "generator";
+  static constexpr const char* made_by = "motiongan train attention";
   static ActionGenerator& kind_of(ActionGanOptions& options) { return options.generator; }
   static std::string write_format(const Format& format) { return io::to_text(format); }
   static Format read_format(const std::string& text, const std::string& where) {
@@ -122,8 +148,8 @@ class ActionGan {
                                        .hidden = options.hidden,
                                        .noise_dim = options.noise_dim,
                                        .attention = options.attention});
-    require(options.noise_dim == 0, "the LSTM baseline takes no noise, noise_dim ", options.noise_dim,
-            " was asked");
+    require(options.noise_dim == 0, "the LSTM baseline takes no noise: noise_dim is ", options.noise_dim,
+            ", expected 0");
     return LstmBaseline(init,
                         {.dof = format.dof(), .classes = format.classes.size(), .hidden = options.hidden});
   }

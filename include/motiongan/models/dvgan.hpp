@@ -1,5 +1,4 @@
-// DVGAN as its user sees it: a generator, and the format that turns its numbers into motion. One file holds
-// both.
+// The text-conditioned motion model of Lin & Amer (DVGAN): a generator and the format of its motion.
 #pragma once
 #include <optional>
 #include <variant>
@@ -12,20 +11,24 @@
 
 namespace motiongan {
 
-/// Which network makes the motion: the CNN makes a window of N frames at once, coarse to fine; the RNN goes
-/// on frame by frame, for as long as one likes, and can continue a given motion.
-enum class GeneratorKind { cnn, rnn };
+/// The generator network.
+enum class GeneratorKind {
+  cnn,  ///< N frames at once, coarse to fine (Lin & Amer, eq. 4)
+  rnn   ///< frame by frame: any length, and completion of a given motion (Lin & Amer, eq. 5)
+};
 constexpr NameTable<GeneratorKind, 2> enum_names(GeneratorKind) {
   return {{{GeneratorKind::cnn, "cnn"}, {GeneratorKind::rnn, "rnn"}}};
 }
 
+/// Options of a Dvgan.
 struct DvganOptions {
   GeneratorKind generator = GeneratorKind::cnn;
-  std::size_t hidden = 256;            ///< k
-  std::size_t taps = 3;                ///< of the CNN's convolutions: 3 or 5
+  std::size_t hidden = 256;            ///< k, hidden width
+  std::size_t taps = 3;                ///< kernel size of the CNN's convolutions: 3 or 5
   std::optional<bool> final_cut = {};  ///< make 2N frames, keep N; not set: on for the CNN, off for the RNN
-  std::uint64_t seed = 1;              ///< of the first weights
+  std::uint64_t seed = 1;              ///< seed of the initial weights
 
+  /// Whether final cut is on.
   bool cuts() const { return final_cut.value_or(generator == GeneratorKind::cnn); }
 
   void list_fields(FieldList& list) {
@@ -39,17 +42,18 @@ struct DvganOptions {
   }
 };
 
+/// Options of Dvgan::generate().
 struct GenerateOptions {
-  std::size_t count = 1;
-  std::uint64_t seed =
-      1;  ///< another seed is another motion; the same one gives the same motion on the same device
-  std::size_t first_sample = 0;  ///< sample i of a seed is the same whatever the count
-  std::size_t frames = 0;        ///< of each motion; 0: the model's N. Others need an RNN generator
+  std::size_t count = 1;         ///< number of motions
+  std::uint64_t seed = 1;        ///< the same seed gives the same motions on the same device
+  std::size_t first_sample = 0;  ///< sample i of a seed is the same motion whatever the count
+  std::size_t frames = 0;        ///< of each motion; 0: the model's N; other lengths require an RNN generator
 };
 
-/// A text-conditioned generator of motion (Lin & Amer; SPEC 2).
+/// A text-conditioned motion generator (Lin & Amer).
 class Dvgan {
  public:
+  /// Throws Error if an option is not valid, or if N does not fit the CNN generator.
   Dvgan(const Context& context, motion::MotionFormat format, const DvganOptions& options = {})
       : context_(context),
         format_(std::move(format)),
@@ -61,25 +65,27 @@ class Dvgan {
   const DvganOptions& options() const { return options_; }
 
   bool is_recurrent() const { return options_.generator == GeneratorKind::rnn; }
+  /// The CNN generator. Throws Error if the model has an RNN generator.
   const CnnGenerator& cnn() const {
-    require(!is_recurrent(), "this model has an RNN generator, a CNN generator was asked for");
+    require(!is_recurrent(), "this model has an RNN generator, expected a CNN generator");
     return std::get<CnnGenerator>(generator_);
   }
-  /// The generator that goes on frame by frame: Error where the model has the other one.
+  /// The RNN generator. Throws Error if the model has a CNN generator.
   const RnnGenerator& rnn() const {
     require(
         is_recurrent(), "this model has a CNN generator, which makes its ", format_.frames,
-        " frames at once: it cannot complete a motion, go on for longer or be asked frame by frame. Train a "
-        "model with an RNN generator for that (motiongan train dvgan --generator rnn)");
+        " frames at once: it cannot complete a motion, make other lengths or generate frame by frame. Train "
+        "a model with an RNN generator for that (motiongan train dvgan --generator rnn)");
     return std::get<RnnGenerator>(generator_);
   }
 
-  /// Parameters by PyTorch's names.
+  /// The generator's parameters, under PyTorch's names.
   void list_parameters(ParameterList& list) {
     std::visit([&](auto& generator) { generator.list_parameters(list); }, generator_);
   }
 
-  /// Motion [N, B, M], normalised, for a batch of sentences; what training makes its fakes with.
+  /// Generates normalised motion [N, B, M] for B sentences; training makes its fakes with it. `key` selects
+  /// the noise and the final cut.
   Var forward(const Sentences& text, const RandomKey& key) const {
     if (is_recurrent()) {
       const RnnGenerator& generator = rnn();
@@ -90,23 +96,23 @@ class Dvgan {
     return cnn()(text, cnn().noise(context_, key, text.batch, cut), cut);
   }
 
-  /// The same with given first frames, `seed` [n, B, M], 1 <= n <= N: completions of N frames, never cut.
-  /// Error for a CNN generator.
+  /// Completes `seed` frames [n, B, M], 1 <= n <= N, to motion [N, B, M], both normalised, without final cut.
+  /// Throws Error if the model has a CNN generator.
   Var complete(const Sentences& text, const Var& seed, const RandomKey& key) const {
     return rnn()(text, rnn().noise(context_, key, text.batch, format_.frames), {}, seed);
   }
 
-  /// Normalised poses of `count` motions, each [frames, dof], one after the other. A caption without a word
-  /// is an Error; words that the training captions did not have count as unknown. A motion that is not of N
-  /// frames is not cut out of a longer one.
+  /// Generates the normalised poses of `count` motions, [frames, dof] each. Words that are not in the
+  /// vocabulary are encoded as unknown. Final cut is applied only if `frames` is N. Throws Error if the
+  /// caption has no words, or if `frames` is not N and the model has a CNN generator.
   std::vector<std::vector<float>> generate_poses(const std::string& caption,
                                                  const GenerateOptions& options) const {
     const NoGrad values_only;
     const std::vector<int> sentence = format_.vocabulary.encode(caption);
     const std::size_t frames = options.frames > 0 ? options.frames : format_.frames, dof = format_.dof();
-    if (frames != format_.frames) rnn();  // refuses where there is none
+    if (frames != format_.frames) rnn();  // throws for a CNN
     std::vector<std::vector<float>> all(options.count, std::vector<float>(frames * dof));
-    constexpr std::size_t most = 64, piece = 64;  // samples and frames at a time
+    constexpr std::size_t most = 64, piece = 64;  // samples and frames per batch
     for (std::size_t first = 0; first < options.count; first += most) {
       const std::size_t batch = std::min(most, options.count - first);
       const auto first_sample = static_cast<std::uint32_t>(options.first_sample + first);
@@ -133,7 +139,7 @@ class Dvgan {
     return all;
   }
 
-  /// Motions of the caption at the model's rate.
+  /// Generates motions of a caption at the model's frame rate; see generate_poses().
   std::vector<motion::Motion> generate(const std::string& caption,
                                        const GenerateOptions& options = {}) const {
     std::vector<motion::Motion> motions;
@@ -141,22 +147,22 @@ class Dvgan {
     return motions;
   }
 
-  /// Writes the weights (PyTorch's names and shapes) and everything that is needed to generate, as one
-  /// safetensors file.
+  /// Writes one safetensors file with the weights (PyTorch's names and shapes), the options and the format.
   void save(const std::filesystem::path& path) { save_model(*this, path); }
 
-  /// A model that save() wrote, or the generator of a run's checkpoint. Throws Error, naming the file and what
-  /// is wrong with it, for any other.
+  /// Loads a file that save() wrote, or the generator in a checkpoint. Throws Error, naming the file and the
+  /// problem, for any other file.
   static Dvgan load(const Context& context, const std::filesystem::path& path) {
     return load_model<Dvgan>(context, path);
   }
 
-  // What model_file.hpp needs.
+  // Required by model_file.hpp.
   using Options = DvganOptions;
   using Format = motion::MotionFormat;
   static constexpr NameTable<GeneratorKind, 2> file_kinds{
       {{GeneratorKind::cnn, "dvgan_cnn_generator"}, {GeneratorKind::rnn, "dvgan_rnn_generator"}}};
   static constexpr const char* part_name = "generator";
+  static constexpr const char* made_by = "motiongan train dvgan";
   static GeneratorKind& kind_of(DvganOptions& options) { return options.generator; }
   static std::string write_format(const Format& format) { return io::to_text(format); }
   static Format read_format(const std::string& text, const std::string& where) {

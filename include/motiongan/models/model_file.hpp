@@ -1,12 +1,13 @@
-// One file for a model: weights, and what is needed to use them.
+// Model files: weights and everything needed to use them in one safetensors file.
 //
-// A safetensors file whose metadata hold "motiongan_model" (which kind of model), "options" and "format" (both
-// JSON); a run's checkpoint holds the same and more. A model that can be kept in such files has
-//   Options               with list_fields()
-//   Format                and read_format(text, where), write_format(format): its JSON
-//   file_kinds            the names of its kinds, by an enum that is a member of its options
+// The metadata contain "motiongan_model" (the kind of model), "options" and "format" (both JSON); a
+// checkpoint contains the same and more. A model class that can be saved has
+//   Options               a struct with list_fields()
+//   Format                with read_format(text, where) and write_format(format), from and to JSON
+//   file_kinds            the table of kind names, by an enum that is a member of Options
 //   kind_of(options)      that member
 //   part_name             the prefix of its tensors in a checkpoint
+//   made_by               the command that trains one
 #pragma once
 #include <filesystem>
 #include <string>
@@ -17,10 +18,10 @@
 
 namespace motiongan {
 
-/// Whether a file is the checkpoint of a training run.
+/// Whether the file is a checkpoint of a training run.
 inline bool is_checkpoint(const io::SafeTensors& file) { return file.metadata.contains("iteration"); }
 
-/// The kind of model that a file holds: its "motiongan_model". Throws Error, naming the file, if it has none.
+/// The kind of model in a file, its "motiongan_model". Throws Error, naming the file, if it has none.
 inline const std::string& model_kind(const io::SafeTensors& file, const std::string& where) {
   const auto found = file.metadata.find("motiongan_model");
   require(found != file.metadata.end(), where,
@@ -28,7 +29,7 @@ inline const std::string& model_kind(const io::SafeTensors& file, const std::str
   return found->second;
 }
 
-/// Whether a file, or a checkpoint, holds a model of this class.
+/// Whether a model file or checkpoint contains a model of this class.
 template <class Model>
 bool holds_model(const io::SafeTensors& file) {
   const auto found = file.metadata.find("motiongan_model");
@@ -57,8 +58,8 @@ void save_model(Model& model, const std::filesystem::path& path) {
   file.write(path);
 }
 
-/// The options that a file's metadata hold. Throws Error if it holds a model of another class, or if a value
-/// is not permitted.
+/// Reads the options from a file's metadata. Throws Error if the file contains a model of another class, or
+/// if a value is out of range.
 template <class Model>
 typename Model::Options model_options(const io::SafeTensors& file, const std::string& where) {
   typename Model::Options options;
@@ -71,7 +72,7 @@ typename Model::Options model_options(const io::SafeTensors& file, const std::st
     Model::kind_of(options) = kind;
     known = true;
   }
-  require(known, where, ": holds a model called \"", found, "\", expected one of ", names);
+  require(known, where, ": holds a model called \"", found, "\", expected one of ", names, "; ", Model::made_by, " makes one");
   const auto text = file.metadata.find("options");
   require(text != file.metadata.end(), where, ": the model has no \"options\" in its metadata");
   const FieldList fields = fields_of(options);
@@ -84,7 +85,7 @@ typename Model::Options model_options(const io::SafeTensors& file, const std::st
   return options;
 }
 
-/// The format that a file's metadata hold: what the model's numbers mean as motion.
+/// Reads the motion format from a file's metadata. Throws Error if it is missing or invalid.
 template <class Model>
 typename Model::Format model_format(const io::SafeTensors& file, const std::string& where) {
   const auto text = file.metadata.find("format");
@@ -92,8 +93,8 @@ typename Model::Format model_format(const io::SafeTensors& file, const std::stri
   return Model::read_format(text->second, where);
 }
 
-/// A model that save_model() wrote, or that of a run's checkpoint. Throws Error, naming the file and what is
-/// wrong with it, for any other.
+/// Loads a file that save_model() wrote, or the model in a checkpoint. Throws Error, naming the file and the
+/// problem, for any other file.
 template <class Model>
 Model load_model(const Context& context, const std::filesystem::path& path) {
   const std::string where = path.string();

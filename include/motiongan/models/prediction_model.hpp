@@ -1,4 +1,4 @@
-// The baselines of motion completion (SPEC 7.7): networks that go on from a prefix of normalised poses.
+// The motion-completion baselines (Lin & Amer, Table 3): networks that continue a prefix of normalised poses.
 #pragma once
 #include <span>
 #include <variant>
@@ -13,26 +13,28 @@
 
 namespace motiongan {
 
+/// The baseline network.
 enum class Predictor {
-  lstm,     ///< one layer of LSTM, told the class, trained to copy the future
-  seq2seq,  ///< one residual GRU, trained to copy the future
-  erd,      ///< encoder, two layers of LSTM, decoder, trained one step ahead on noisy poses
-  lstm_3lr  ///< three layers of LSTM, likewise
+  lstm,     ///< one-layer LSTM, conditioned on the action, trained by MSE on its own rollout
+  seq2seq,  ///< residual GRU (Martinez, Black & Romero 2017), trained by MSE on its own rollout
+  erd,      ///< encoder, two-layer LSTM, decoder (Fragkiadaki et al. 2015), one step ahead on noisy poses
+  lstm_3lr  ///< three-layer LSTM (Fragkiadaki et al. 2015), likewise
 };
 constexpr NameTable<Predictor, 4> enum_names(Predictor) {
   return {{{Predictor::lstm, "lstm"}, {Predictor::seq2seq, "seq2seq"}, {Predictor::erd, "erd"}, {Predictor::lstm_3lr, "lstm_3lr"}}};
 }
 
-/// The width that the predictor has in its paper.
+/// The hidden width in the predictor's paper.
 inline std::size_t usual_hidden(Predictor predictor) {
   return predictor == Predictor::lstm ? 256 : predictor == Predictor::seq2seq ? 1024 : 1000;
 }
 
+/// Options of a PredictionModel.
 struct PredictionOptions {
   Predictor predictor = Predictor::seq2seq;
-  std::size_t hidden = 0;  ///< 0: usual_hidden()
-  bool labels = true;      ///< whether seq2seq sees the action; lstm always does, the other two never
-  std::uint64_t seed = 1;  ///< of the first weights
+  std::size_t hidden = 0;  ///< hidden width; 0: usual_hidden()
+  bool labels = true;      ///< whether seq2seq is given the action; lstm always is, the other two never
+  std::uint64_t seed = 1;  ///< seed of the initial weights
 
   void list_fields(FieldList& list) {
     list.add(predictor, {.key = "predictor", .help = "which network", .saved = false});
@@ -43,19 +45,20 @@ struct PredictionOptions {
   }
 };
 
-/// What a prediction model's numbers are: the size of a pose and the number of actions.
+/// The sizes of a prediction model's data: channels of a pose and number of actions.
 struct PredictionFormat {
   std::size_t dof = 0, actions = 0;
 
   void list_fields(FieldList& list) {
-    list.add(dof, {.key = "dof", .help = "numbers of a pose", .range = Range::between(1, 65536)});
+    list.add(dof, {.key = "dof", .help = "channels of a pose", .range = Range::between(1, 65536)});
     list.add(actions, {.key = "actions", .help = "number of actions", .range = Range::between(1, 65536)});
   }
 };
 
-/// Goes on from a prefix of poses.
+/// A baseline that continues a prefix of poses.
 class PredictionModel {
  public:
+  /// Throws Error if an option or a size is out of range.
   PredictionModel(Context context, const PredictionFormat& format, const PredictionOptions& options)
       : context_(std::move(context)),
         format_(format),
@@ -66,20 +69,20 @@ class PredictionModel {
   const PredictionFormat& format() const { return format_; }
   std::size_t dof() const { return format_.dof; }
   std::size_t action_count() const { return format_.actions; }
-  /// With the hidden size that it has.
+  /// The options, with the actual hidden width instead of 0.
   const PredictionOptions& options() const { return options_; }
 
-  /// Parameters by PyTorch's names.
+  /// The parameters, under PyTorch's names.
   void list_parameters(ParameterList& list) {
     std::visit([&](auto& network) { network.list_parameters(list); }, network_);
   }
 
-  /// Whether it is trained one step ahead (next_poses) and not on what it makes by itself.
+  /// Whether it is trained one step ahead (next_poses()) instead of on its own rollout (forward()).
   bool one_step_ahead() const {
     return options_.predictor == Predictor::erd || options_.predictor == Predictor::lstm_3lr;
   }
 
-  /// The `frames` poses [frames, B, dof] that follow the prefix [n, B, dof]; `actions` [B, Y] one-hot.
+  /// The next `frames` poses [frames, B, dof] after a prefix [n, B, dof]; `actions` [B, Y] one-hot.
   Var forward(const Var& prefix, const Var& actions, std::size_t frames) const {
     return std::visit(
         [&](const auto& network) -> Var {
@@ -91,7 +94,8 @@ class PredictionModel {
         network_);
   }
 
-  /// What comes after each pose of x [T, B, dof]; Error for a model that is not trained so.
+  /// The prediction of the pose after each pose of x [T, B, dof]: [T, B, dof]. Throws Error unless
+  /// one_step_ahead().
   Var next_poses(const Var& x) const {
     return std::visit(
         [&](const auto& network) -> Var {
@@ -105,14 +109,14 @@ class PredictionModel {
         network_);
   }
 
-  /// The `frames` normalised poses, [frames, B, dof], that follow `prefixes` [n, B, dof] (both time-major);
-  /// actions [B]. Error where the sizes do not fit.
+  /// The next `frames` poses [frames, B, dof] after `prefixes` [n, B, dof], both normalised and time-major;
+  /// `actions` [B]. Throws Error if the sizes do not fit.
   std::vector<float> predict(std::span<const float> prefixes, std::size_t batch,
                              std::span<const std::size_t> actions, std::size_t frames) const {
-    require(batch > 0 && frames > 0, "predict: ", batch, " prefixes and ", frames,
-            " frames to make, expected at least 1 of each");
-    require(!prefixes.empty() && prefixes.size() % (batch * dof()) == 0, "predict: ", prefixes.size(),
-            " numbers are no whole frames of ", batch, " poses of ", dof(), " numbers");
+    require(batch > 0 && frames > 0, "predict: batch is ", batch, " and frames is ", frames,
+            ", expected at least 1 of each");
+    require(!prefixes.empty() && prefixes.size() % (batch * dof()) == 0, "predict: prefixes has ",
+            prefixes.size(), " values, expected a multiple of ", batch, " x ", dof(), " (batch x dof)");
     require(actions.size() == batch, "predict: ", actions.size(), " actions for ", batch, " prefixes");
     const NoGrad off;
     const Tensor prefix = Tensor::from(context_, {prefixes.size() / batch / dof(), batch, dof()}, prefixes);
@@ -121,16 +125,16 @@ class PredictionModel {
         .to_host();
   }
 
-  /// Writes the weights (PyTorch's names and shapes) and the model's description as one safetensors file.
+  /// Writes one safetensors file with the weights (PyTorch's names and shapes), the options and the format.
   void save(const std::filesystem::path& path) { save_model(*this, path); }
 
-  /// A model that save() wrote, or that of a run's checkpoint. Throws Error, naming the file and what is wrong
-  /// with it, for any other.
+  /// Loads a file that save() wrote, or the model in a checkpoint. Throws Error, naming the file and the
+  /// problem, for any other file.
   static PredictionModel load(const Context& context, const std::filesystem::path& path) {
     return load_model<PredictionModel>(context, path);
   }
 
-  // What model_file.hpp needs.
+  // Required by model_file.hpp.
   using Options = PredictionOptions;
   using Format = PredictionFormat;
   static constexpr NameTable<Predictor, 4> file_kinds{{{Predictor::lstm, "predictor_lstm"},
@@ -138,6 +142,7 @@ class PredictionModel {
                                                        {Predictor::erd, "predictor_erd"},
                                                        {Predictor::lstm_3lr, "predictor_lstm_3lr"}}};
   static constexpr const char* part_name = "generator";
+  static constexpr const char* made_by = "motiongan evaluate completion";
   static Predictor& kind_of(PredictionOptions& options) { return options.predictor; }
   static std::string write_format(PredictionFormat format) { return io::fields_to_text(fields_of(format)); }
   static PredictionFormat read_format(const std::string& text, const std::string& where) {

@@ -1,5 +1,5 @@
-// A ranker as its user sees it: how well a description fits a motion, and the embedding of motion that the
-// evaluation measures in (Lin & Amer, eq. 8 and 9; SPEC 7).
+// Rankers (Lin & Amer, section 6.2): they score how well a description fits a motion. The evaluation uses
+// their embedding of motion.
 #pragma once
 #include <variant>
 
@@ -10,17 +10,21 @@
 
 namespace motiongan {
 
-/// What embeds a motion: the CNN critic's trunk, or mean pose and mean motion.
-enum class RankerKind { cnn, rnn };
+/// The network that embeds a motion.
+enum class RankerKind {
+  cnn,  ///< the trunk of the CNN critic (Lin & Amer, eq. 8)
+  rnn   ///< mean features of poses and of motion (Lin & Amer, eq. 9)
+};
 constexpr NameTable<RankerKind, 2> enum_names(RankerKind) {
   return {{{RankerKind::cnn, "cnn"}, {RankerKind::rnn, "rnn"}}};
 }
 
+/// Options of a Ranker.
 struct RankerOptions {
   RankerKind kind = RankerKind::rnn;
-  std::size_t hidden = 1024;  ///< k
-  std::size_t taps = 3;       ///< of the CNN's convolutions: 3 or 5
-  std::uint64_t seed = 1;     ///< of the first weights
+  std::size_t hidden = 1024;  ///< k, width of the network and of the embedding
+  std::size_t taps = 3;       ///< kernel size of the CNN's convolutions: 3 or 5
+  std::uint64_t seed = 1;     ///< seed of the initial weights
 
   void list_fields(FieldList& list) {
     list.add(kind, {.key = "kind",
@@ -34,9 +38,10 @@ struct RankerOptions {
   }
 };
 
-/// F(S, A) = <h_txt, h / |h|>: the score of description S for motion A.
+/// The score of description S for motion A: F(S, A) = <h_txt, h / |h|> (Lin & Amer, appendix B).
 class Ranker {
  public:
+  /// Throws Error if an option is not valid, or if N does not fit the CNN.
   Ranker(const Context& context, motion::MotionFormat format, const RankerOptions& options = {})
       : context_(context),
         format_(std::move(format)),
@@ -47,23 +52,23 @@ class Ranker {
   const motion::MotionFormat& format() const { return format_; }
   const RankerOptions& options() const { return options_; }
 
-  /// Embedding of normalised motion [N, B, M], not of length 1 yet: [B, k].
+  /// The embedding h of normalised motion [N, B, M], not yet of unit length: [B, k].
   Var embed(const Var& motion) const {
     return std::visit([&](const auto& network) { return network.embed(motion); }, network_);
   }
 
-  /// Embedding of descriptions: [K, k].
+  /// The embedding h_txt of K descriptions: [K, k].
   Var describe(const Sentences& text) const {
     return std::visit([&](const auto& network) { return network.describe(text); }, network_);
   }
 
-  /// Scores of all descriptions [K, k], made by describe(), for all motions [N, B, M]: [B, K].
+  /// The scores [B, K] of all descriptions [K, k], from describe(), for all motions [N, B, M].
   Var scores(const Var& motion, const Var& descriptions) const {
     return matmul(normalize_rows(embed(motion)), descriptions, false, true);
   }
 
-  /// h / |h| of motions, [count, k]. Of each the first N frames at the format's rate count, resampled where
-  /// it has another one. Error for a shorter motion, or another skeleton.
+  /// The unit-length embeddings h / |h| of motions, [count, k], from their first N frames, resampled to the
+  /// model's frame rate. Throws Error if a motion is shorter or has another skeleton.
   std::vector<float> features(const std::vector<motion::Motion>& motions) const {
     const NoGrad values_only;
     const std::size_t frames = format_.frames, dof = format_.dof();
@@ -86,14 +91,14 @@ class Ranker {
     return out;
   }
 
-  /// Scores [count, K] of the descriptions for motions whose features() are given, [count, k]. Error for a
-  /// description without a word.
+  /// The scores [count, K] of K descriptions for motions with the given features() [count, k]. Throws Error
+  /// if a description has no words.
   std::vector<float> scores(std::span<const float> features,
                             const std::vector<std::string>& descriptions) const {
     const NoGrad values_only;
     const std::size_t k = options_.hidden;
-    require(!features.empty() && features.size() % k == 0, features.size(),
-            " numbers of features are not rows of ", k);
+    require(!features.empty() && features.size() % k == 0, "features has ", features.size(),
+            " values, expected a multiple of ", k, " (hidden)");
     std::vector<std::vector<int>> sentences;
     for (const std::string& description : descriptions)
       sentences.push_back(format_.vocabulary.encode(description));
@@ -103,27 +108,27 @@ class Ranker {
     return matmul(motion, text, false, true).value().to_host();
   }
 
-  /// Parameters by PyTorch's names.
+  /// The parameters, under PyTorch's names.
   void list_parameters(ParameterList& list) {
     std::visit([&](auto& network) { network.list_parameters(list); }, network_);
   }
 
-  /// Writes the weights (PyTorch's names and shapes) and everything that is needed to rank, as one
-  /// safetensors file.
+  /// Writes one safetensors file with the weights (PyTorch's names and shapes), the options and the format.
   void save(const std::filesystem::path& path) { save_model(*this, path); }
 
-  /// A ranker that save() wrote, or that of a run's checkpoint. Throws Error, naming the file and what is
-  /// wrong with it, for any other.
+  /// Loads a file that save() wrote, or the ranker in a checkpoint. Throws Error, naming the file and the
+  /// problem, for any other file.
   static Ranker load(const Context& context, const std::filesystem::path& path) {
     return load_model<Ranker>(context, path);
   }
 
-  // What model_file.hpp needs.
+  // Required by model_file.hpp.
   using Options = RankerOptions;
   using Format = motion::MotionFormat;
   static constexpr NameTable<RankerKind, 2> file_kinds{
       {{RankerKind::cnn, "cnn_ranker"}, {RankerKind::rnn, "rnn_ranker"}}};
   static constexpr const char* part_name = "ranker";
+  static constexpr const char* made_by = "motiongan train ranker";
   static RankerKind& kind_of(RankerOptions& options) { return options.kind; }
   static std::string write_format(const Format& format) { return io::to_text(format); }
   static Format read_format(const std::string& text, const std::string& where) {
@@ -145,7 +150,7 @@ class Ranker {
     return RnnRanker(init, sizes);
   }
 
-  /// The motion's first N frames as the network sees them, [N, M].
+  /// The motion's first N frames as the network's input, [N, M].
   std::vector<float> window_of(const motion::Motion& motion) const {
     const bool same_rate = std::abs(motion.rate / format_.rate - 1) < 1e-6;
     std::vector<float> poses =

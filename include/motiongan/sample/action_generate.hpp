@@ -1,26 +1,15 @@
 // Whole clips from an attention model: by a schedule of classes, or as synthetic counterparts of real clips.
 #pragma once
-#include "motiongan/sample/action_schedule.hpp"
+#include "motiongan/data/action_schedule.hpp"
 #include "motiongan/sample/action_stream.hpp"
 
 namespace motiongan {
 
-struct ActionGenerateOptions {
-  bool with_prior = true;          ///< whether the clips begin with the T frames of the prior
-  std::uint64_t seed = 1;          ///< seed of the noise, if the model takes noise
-  std::uint32_t first_sample = 0;  ///< noise sample of the first clip; later clips count up from it
-};
-
-/// Generates one clip for each prior, all with the same schedule; their ids are those of the priors. The
-/// model makes T frames at a time. Where a piece of the schedule ends within them, the remaining frames are
-/// discarded and the next piece continues from the last T frames kept, so that classes change exactly where
-/// the schedule says. Throws Error if the schedule has no frames or a prior does not fit the model.
-inline std::vector<motion::PositionClip> generate(const ActionGan& model,
-                                                  std::span<const ActionPrior> priors,
-                                                  const ActionSchedule& schedule,
-                                                  const ActionGenerateOptions& options = {}) {
+inline std::vector<motion::PositionClip> ActionGan::generate(const std::vector<ActionPrior>& priors,
+                                                             const ActionSchedule& schedule,
+                                                             const ActionGenerateOptions& options) const {
   require(frames_of(schedule) > 0, "the schedule has no frames, expected at least 1");
-  ActionStream stream(model);
+  ActionStream stream(*this);
   std::vector<ActionCharacterOptions> characters;
   std::vector<motion::PositionClip> clips;
   for (std::size_t i = 0; i < priors.size(); ++i) {
@@ -29,15 +18,15 @@ inline std::vector<motion::PositionClip> generate(const ActionGan& model,
                           .label = schedule.front().label,
                           .seed = options.seed,
                           .sample = options.first_sample + static_cast<std::uint32_t>(i)});
-    clips.push_back({prior.id, prior.skeleton, model.format().rate, 0, {}});
+    clips.push_back({prior.id, prior.skeleton, format_.rate, 0, {}});
     if (options.with_prior)
-      clips.back().frames = model.format().frames, clips.back().positions = prior.positions;
+      clips.back().frames = format_.frames, clips.back().positions = prior.positions;
   }
   const std::vector<ActionStream::Id> ids = stream.add(characters);
   for (const ActionPiece& piece : schedule) {
     for (const ActionStream::Id id : ids) stream.set_class(id, piece.label);
     for (std::size_t left = piece.frames; left > 0;) {
-      const std::size_t frames = std::min(left, model.format().frames);
+      const std::size_t frames = std::min(left, format_.frames);
       stream.step(frames);
       left -= frames;
       for (std::size_t i = 0; i < ids.size(); ++i) {
@@ -48,6 +37,12 @@ inline std::vector<motion::PositionClip> generate(const ActionGan& model,
     }
   }
   return clips;
+}
+
+inline std::vector<motion::PositionClip> ActionGan::generate(const std::vector<ActionPrior>& priors,
+                                                             std::string_view schedule,
+                                                             const ActionGenerateOptions& options) const {
+  return generate(priors, parse_action_schedule(schedule, format_), options);
 }
 
 /// A clip of which all but the first T frames are generated.
@@ -70,7 +65,7 @@ inline std::vector<SyntheticClip> synthesise(const ActionGan& model, const motio
   std::vector<std::size_t> lengths;
   std::vector<std::vector<motion::RootTrack>> places;
   for (std::size_t i = 0; i < clips.size(); ++i) {
-    const motion::PositionClip real = clip_of(data, clips[i]);
+    const motion::PositionClip real = data.clip(clips[i]);
     const ActionPrior prior = prior_from(real, format);
     const std::size_t label = format.class_index(data.format.classes[clips[i].label]);
     const auto at_rate =

@@ -9,7 +9,7 @@
 
 #include "motiongan/models/action_gan.hpp"
 #include "motiongan/networks/attention_rollout.hpp"
-#include "motiongan/sample/action_prior.hpp"
+#include "motiongan/data/action_prior.hpp"
 
 namespace motiongan {
 

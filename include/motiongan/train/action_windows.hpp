@@ -1,5 +1,4 @@
-// Batches of labelled windows for the second paper's training, drawn on the device from clips that stay
-// there.
+// Batches of labelled windows for training the action models, gathered on the device.
 #pragma once
 #include "motiongan/core/random.hpp"
 #include "motiongan/data/action_dataset.hpp"
@@ -8,19 +7,20 @@
 
 namespace motiongan {
 
-/// Real priors and what followed them, [T, B, dof] each, with their classes.
+/// A batch of real priors with the futures that follow them, [T, B, dof] each, and their classes.
 struct ActionBatch {
-  Tensor motion;                    ///< both, joined in time, [2T, B, dof]
+  Tensor motion;                    ///< prior and future joined in time, [2T, B, dof]
   Tensor prior, future;             ///< views of motion
   std::vector<std::size_t> labels;  ///< [B]
   Tensor classes;                   ///< one-hot, [B, Y]
 };
 
-/// All clips of one part of a data set in one device buffer. A batch is a function of (seed, step) alone, so
-/// a resumed run draws what an unbroken one would have drawn.
+/// Draws windows from the clips of one part of a data set, which are kept in one device buffer. A batch
+/// depends only on (seed, step), so a resumed run draws the same batches as an uninterrupted one.
 class ActionSampler {
  public:
-  /// `balanced`: draw the class first, so that classes of few clips are seen as often as others.
+  /// `balanced`: draw the class first, so that classes with few clips are drawn as often as the others.
+  /// Throws Error if there are no clips or a label is out of range.
   ActionSampler(const Context& context, const motion::ActionDataset& data,
                 const std::vector<motion::ActionClip>& clips, bool balanced = true)
       : context_(context),
@@ -42,7 +42,7 @@ class ActionSampler {
     buffer_ = ClipBuffer(context, data.format.dof(), poses);
   }
 
-  /// `size` windows, each at a start of its clip, all uniform.
+  /// Draws `size` windows of 2T frames; class (if balanced), clip and start frame are uniform.
   ActionBatch draw(std::uint64_t seed, std::uint32_t step, std::size_t size) const {
     const RandomKey key{.seed = seed, .stream = RandomStream::windows, .step = step};
     std::vector<cl_int> rows;
@@ -76,7 +76,7 @@ class ActionSampler {
   std::size_t frames_, classes_;
   bool balanced_;
   std::vector<Clip> clips_;
-  std::vector<std::vector<std::size_t>> by_class_;  // clips of each class that has some
+  std::vector<std::vector<std::size_t>> by_class_;  // clips of each class that is not empty
   ClipBuffer buffer_;
 };
 

@@ -1,5 +1,5 @@
-// Training the attention WGAN-GP (Malek-Podjaski & Deligianni): critic, classifier and generator,
-// each through the others but without a gradient for them.
+// Training of the attention WGAN-GP (Malek-Podjaski & Deligianni): critic, classifier and generator take
+// turns, the other networks frozen.
 #pragma once
 #include "motiongan/networks/attention_classifier.hpp"
 #include "motiongan/networks/attention_critic.hpp"
@@ -12,25 +12,26 @@
 
 namespace motiongan {
 
-/// The defaults are the paper's (Malek-Podjaski & Deligianni), where it gives them.
+/// Options of AttentionTrainer. Where the paper (Malek-Podjaski & Deligianni) gives a value, it is the
+/// default.
 struct AttentionTrainOptions {
-  std::size_t iterations = 20'000;  ///< each is critic_steps, a classifier step and generator_steps
+  std::size_t iterations = 20'000;  ///< each: critic_steps, one classifier step, generator_steps
   std::size_t critic_steps = 5;     ///< n_critic
   std::size_t generator_steps = 1;  ///< n_generator
   std::size_t batch = 64;
-  std::size_t rollouts = 2;       ///< n_ar: how many seconds the generator makes in a row, fed with its output
-  double lambda_gp = 10;          ///< weight of the gradient penalty
-  double weight_clip = 0;         ///< above 0: clip the critic's weights there, instead of the penalty
-  double skeleton_weight = 1;     ///< of L_skel (eq. 9); 0: without
-  double blend_weight = 1;        ///< of L_blend (eq. 10); 0: without
-  double class_weight = 1;        ///< of L_class (eq. 11); 0: without
-  bool skeleton_vectors = false;  ///< L_skel compares bone vectors, as eq. 9 is printed, not their lengths
+  std::size_t rollouts = 2;       ///< n_ar: seconds generated in a row, each from the one before
+  double lambda_gp = 10;          ///< weight of the gradient penalty (eq. 6)
+  double weight_clip = 0;         ///< above 0: clip the critic's weights to +-weight_clip; no penalty then
+  double skeleton_weight = 1;     ///< weight of L_skel (eq. 9); 0: off
+  double blend_weight = 1;        ///< weight of L_blend (eq. 10); 0: off
+  double class_weight = 1;        ///< weight of L_class (eq. 11); 0: off
+  bool skeleton_vectors = false;  ///< L_skel compares bone vectors, as eq. 9 is printed, not bone lengths
   bool critic_classes = false;    ///< give the critic the class
   bool balanced = true;           ///< draw classes with equal probability, however many clips they have
-  AdamOptions adam{};             ///< of all networks
+  AdamOptions adam{};             ///< used for all three networks
   std::uint64_t seed = 1;
 
-  /// Steps of an iteration that have random numbers of their own.
+  /// Update steps in an iteration; each draws its own random numbers.
   std::size_t steps() const { return critic_steps + 1 + generator_steps; }
 
   void list_fields(FieldList& list) {
@@ -74,14 +75,14 @@ struct AttentionTrainOptions {
 /// Losses of the last iteration.
 struct AttentionLosses {
   double wasserstein = 0;     ///< mean D(real) - mean D(fake) of the last critic step
-  double penalty = 0;         ///< mean (|gradient| - 1)^2; 0 where weights are clipped instead
-  double adversarial = 0;     ///< -mean D(fake) of the generator's step
+  double penalty = 0;         ///< mean (|gradient| - 1)^2; 0 with weight clipping
+  double adversarial = 0;     ///< -mean D(fake) of the last generator step
   double skeleton = 0;        ///< the generator's L_skel, unweighted; 0 if its weight is 0
   double blend = 0;           ///< the generator's L_blend, likewise
   double classification = 0;  ///< the generator's L_class, likewise
   double classifier = 0;      ///< the classifier's own loss on real motion
-  double accuracy = 0;        ///< fraction of that batch that it classified correctly
-  double gamma = 0;           ///< of the generator's attention; 0 without
+  double accuracy = 0;        ///< the classifier's accuracy on that batch, 0..1
+  double gamma = 0;           ///< gamma of the generator's attention (eq. 3); 0 without attention
 
   /// The columns of the log.
   std::vector<NamedLoss> named() const {
@@ -91,7 +92,7 @@ struct AttentionLosses {
   }
 };
 
-/// Fraction of the rows of logits [B, Y] whose largest number is at the label.
+/// Fraction of the rows of logits [B, Y] whose maximum is at the label.
 inline double accuracy_of(const Tensor& logits, std::span<const std::size_t> labels) {
   const std::vector<double> values = logits.to_host<double>();
   const std::size_t classes = values.size() / labels.size();
@@ -104,9 +105,11 @@ inline double accuracy_of(const Tensor& logits, std::span<const std::size_t> lab
   return static_cast<double>(right) / static_cast<double>(labels.size());
 }
 
-/// Trains an ActionGan on a data set. The three kinds of steps are also callable by themselves.
+/// Trains the attention generator of an ActionGan. Critic, classifier and generator steps can also be called
+/// one by one.
 class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, AttentionLosses> {
  public:
+  /// Throws Error if the model is the LSTM baseline, or if the data set's format or an option does not fit.
   AttentionTrainer(ActionGan& model, const motion::ActionDataset& data, const AttentionTrainOptions& options)
       : ModelTrainer(model, options),
         windows_(model.context(), data, data.train, options.balanced),
@@ -136,7 +139,7 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
             {"classifier", named_parameters(classifier_), &classifier_adam_}};
   }
 
-  /// critic_steps critic steps, a classifier step, generator_steps generator steps.
+  /// One iteration: critic_steps critic steps, one classifier step, generator_steps generator steps.
   void iterate() override {
     auto step = static_cast<std::uint32_t>(iteration_ * options_.steps());
     for (std::size_t i = 0; i < options_.critic_steps; ++i) critic_step(step++);
@@ -145,8 +148,9 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
     ++iteration_;
   }
 
-  /// One update of the critic; `step` numbers the step's random numbers. Its fakes are what rollout r made of
-  /// what rollout r - 1 had made, r uniform in 1..rollouts, so that later rollouts are not strange to it.
+  /// One update of the critic (eq. 6 and 7); `step` selects its random numbers. The fakes pair the outputs of
+  /// rollouts r - 1 and r, with r uniform in 1..rollouts, so that later rollouts are in the critic's training
+  /// distribution.
   void critic_step(std::uint32_t step) {
     const RandomKey key{.seed = options_.seed, .step = step};
     const ActionBatch batch = windows_.draw(options_.seed, step, options_.batch);
@@ -176,7 +180,7 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
     penalty_ = loss.penalty.empty() ? Var() : loss.penalty.detach();
   }
 
-  /// One update of the classifier, on real futures only.
+  /// One update of the classifier (eq. 11), on real futures only.
   void classifier_step(std::uint32_t step) {
     const ActionBatch batch = windows_.draw(options_.seed, step, options_.batch);
     const Var logits = classifier_(Var::constant(batch.future));
@@ -187,13 +191,13 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
     labels_ = batch.labels;
   }
 
-  /// The parts of the generator's loss on a batch, each [1], empty where their weight is 0.
+  /// The generator's loss (eq. 8) and its terms, each [1]; terms with weight 0 are empty.
   struct GeneratorLoss {
     Var total, adversarial, skeleton, blend, classification;
   };
 
-  /// What the generator's step minimises; `step` numbers the random numbers. Critic and classifier are
-  /// frozen.
+  /// The generator's loss on a batch, averaged over the rollouts; `step` selects the noise. Critic and
+  /// classifier are frozen.
   GeneratorLoss generator_loss_of(const ActionBatch& batch, std::uint32_t step) {
     const Frozen critic_fixed(named_parameters(critic_)), classifier_fixed(named_parameters(classifier_));
     const RandomKey key{.seed = options_.seed, .step = step};
@@ -203,7 +207,7 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
       priors.push_back(r == 0 ? real_prior : futures.back());
       futures.push_back(model_.forward(priors.back(), classes, noise_key(key, r)));
     }
-    // All rollouts side by side: a mean over the batch is the mean over them.
+    // All rollouts concatenated along the batch: the mean over the batch averages over rollouts too.
     const auto repeated = [&](const Var& x, std::size_t axis) {
       return concatenate(std::vector<Var>(options_.rollouts, x), axis);
     };
@@ -225,7 +229,7 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
     return loss;
   }
 
-  /// One update of the generator; critic and classifier get no gradient.
+  /// One update of the generator; no gradient flows to critic and classifier.
   void generator_step(std::uint32_t step) {
     const Frozen critic_fixed(named_parameters(critic_)), classifier_fixed(named_parameters(classifier_));
     const GeneratorLoss loss = generator_loss_of(windows_.draw(options_.seed, step, options_.batch), step);
@@ -251,7 +255,7 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
   }
 
  private:
-  /// Each rollout of a step has noise of its own.
+  /// A different noise for each rollout of a step.
   static RandomKey noise_key(RandomKey key, std::size_t rollout) {
     key.first_frame = static_cast<std::int32_t>(rollout);
     return key;
@@ -272,7 +276,7 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
   std::vector<std::size_t> labels_;
 };
 
-/// Trains the attention generator from start to end, see run_training().
+/// Trains the attention generator: a whole run, see run_training().
 inline RunResult train(ActionGan& model, const motion::ActionDataset& data,
                        const AttentionTrainOptions& options, const RunOptions& run = {}) {
   AttentionTrainer trainer(model, data, options);

@@ -1,5 +1,4 @@
-// Training the LSTM baseline (Malek-Podjaski & Deligianni): it learns to reproduce the second of motion that
-// follows a prior.
+// Training of the LSTM baseline (Malek-Podjaski & Deligianni): MSE on the T frames that follow a prior.
 #pragma once
 #include "motiongan/models/action_gan.hpp"
 #include "motiongan/train/action_windows.hpp"
@@ -8,6 +7,7 @@
 
 namespace motiongan {
 
+/// Options of BaselineTrainer.
 struct BaselineTrainOptions {
   std::size_t iterations = 20'000;
   std::size_t batch = 64;
@@ -15,6 +15,7 @@ struct BaselineTrainOptions {
   AdamOptions adam{};
   std::uint64_t seed = 1;
 
+  /// Update steps in an iteration.
   std::size_t steps() const { return 1; }
 
   void list_fields(FieldList& list) {
@@ -41,6 +42,8 @@ struct BaselineLosses {
 /// Trains an ActionGan whose generator is the LSTM.
 class BaselineTrainer : public ModelTrainer<ActionGan, BaselineTrainOptions, BaselineLosses> {
  public:
+  /// Throws Error if the model has an attention generator, or if the data set's format or an option does not
+  /// fit.
   BaselineTrainer(ActionGan& model, const motion::ActionDataset& data, const BaselineTrainOptions& options)
       : ModelTrainer(model, options),
         windows_(model.context(), data, data.train, options.balanced),
@@ -75,7 +78,7 @@ class BaselineTrainer : public ModelTrainer<ActionGan, BaselineTrainOptions, Bas
   Var loss_;
 };
 
-/// Trains the LSTM baseline from start to end, see run_training().
+/// Trains the LSTM baseline: a whole run, see run_training().
 inline RunResult train_baseline(ActionGan& model, const motion::ActionDataset& data,
                                 const BaselineTrainOptions& options, const RunOptions& run = {}) {
   BaselineTrainer trainer(model, data, options);

@@ -1,4 +1,4 @@
-// A training run on disk: everything that the next iteration depends on, in one file.
+// Checkpoints: the complete state of a training run in one safetensors file.
 #pragma once
 #include <charconv>
 #include <list>
@@ -16,7 +16,7 @@ inline io::SafeTensor host_copy(const Tensor& t) {
                                                    : io::SafeTensor::of(t.shape(), t.to_host<float>());
 }
 
-/// A checkpoint's metadata `key`. Error where there is none; `where` names the file.
+/// The value of `key` in a checkpoint's metadata. Throws Error if it is missing; `where` names the file.
 inline const std::string& checkpoint_text(const io::SafeTensors& file, const std::string& key,
                                           const std::string& where) {
   const auto found = file.metadata.find(key);
@@ -25,7 +25,7 @@ inline const std::string& checkpoint_text(const io::SafeTensors& file, const std
   return found->second;
 }
 
-/// The same as a whole number.
+/// The same, parsed as a whole number.
 inline std::size_t checkpoint_number(const io::SafeTensors& file, const std::string& key,
                                      const std::string& where) {
   const std::string& value = checkpoint_text(file, key, where);
@@ -38,15 +38,16 @@ inline std::size_t checkpoint_number(const io::SafeTensors& file, const std::str
 
 }  // namespace detail
 
-/// What the maker of a run wants to find again in its checkpoint, such as where the data came from.
+/// Key-value notes that a checkpoint carries for its owner, such as where the data came from.
 using RunNotes = std::map<std::string, std::string>;
 
-/// What a checkpoint says of its run without a device: how far it is, and the notes.
+/// What can be read from a checkpoint without a device.
 struct RunRecord {
-  std::size_t iteration = 0;
+  std::size_t iteration = 0;  ///< iterations done
   RunNotes notes;
 };
 
+/// Throws Error if the file is not a checkpoint; `where` names it.
 inline RunRecord read_run_record(const io::SafeTensors& checkpoint, const std::string& where) {
   RunRecord record{detail::checkpoint_number(checkpoint, "iteration", where), {}};
   for (const auto& [key, value] : checkpoint.metadata)
@@ -57,9 +58,9 @@ inline RunRecord read_run_record(const std::filesystem::path& checkpoint) {
   return read_run_record(io::SafeTensors::read(checkpoint), checkpoint.string());
 }
 
-/// Writes the run's state: all networks, all optimizers, the position. Random numbers have no state: they are
-/// named by seed and step. The file is written next to `path` and renamed, so a run killed at any moment leaves
-/// the last whole one.
+/// Writes the state of a run: all networks, the optimizer states and the iteration. Random numbers have no
+/// state: seed and step determine them. The file is written next to `path` and renamed, so a run killed at
+/// any moment leaves the previous checkpoint intact.
 inline void save_checkpoint(Trainer& trainer, const std::filesystem::path& path, const RunNotes& notes = {}) {
   io::SafeTensors file;
   trainer.describe(file);
@@ -75,14 +76,15 @@ inline void save_checkpoint(Trainer& trainer, const std::filesystem::path& path,
   file.write(path);
 }
 
-/// Continues where save_checkpoint() left off, bit for bit as if the run had never stopped. The trainer must
-/// have been made with the same options and data: Error says what differs, and leaves the trainer as it was.
+/// Restores the state that save_checkpoint() wrote; training then continues bit for bit as if it had never
+/// stopped. Throws Error, naming what differs, if the trainer has other options or data; the trainer is then
+/// unchanged.
 inline void load_checkpoint(Trainer& trainer, const std::filesystem::path& path) {
   const std::string where = path.string();
   const io::SafeTensors file = io::SafeTensors::read(path);
   trainer.require_same_run(file, where);
   const std::size_t iteration = detail::checkpoint_number(file, "iteration", where);
-  // All tensors in one list: when one of them is wrong, nothing has changed.
+  // One list of all tensors, so that load_parameters() checks every one before it changes any.
   const std::vector<TrainedPart> parts = trainer.parts();
   std::list<Var> state;
   std::vector<NamedParameter> all;

@@ -1,4 +1,4 @@
-// Clips that stay on the device while windows of them are drawn into batches.
+// Clips stored on the device, and windows of them gathered into batches.
 #pragma once
 #include <optional>
 #include <span>
@@ -8,19 +8,20 @@
 
 namespace motiongan {
 
-/// Columns of a pose that a window counts from its own start, and those that turn with its first heading.
+/// How a window is made relative to its own first frame: which columns are relative to it, and which are
+/// rotated by its heading.
 struct WindowForm {
-  std::vector<cl_int> relative = {};                ///< 1 for each column that is made relative; empty: none
-  std::size_t x = 0, z = 0, yaw = 0;                ///< columns of the root's place and yaw; yaw = dof: no turn
-  double yaw_scale = 0;
+  std::vector<cl_int> relative = {};  ///< [dof], 1 for each relative column; empty: none
+  std::size_t x = 0, z = 0, yaw = 0;  ///< columns of the root's position and yaw; yaw = dof: no rotation
+  double yaw_scale = 0;               ///< radians of yaw per unit of its column
 };
 
-/// Poses [all frames, dof] of clips, one after the other, in one buffer. A sampler decides which windows to
-/// draw; gather() copies them into a batch.
+/// The poses of all clips, concatenated, in one device buffer [all frames, dof]. A sampler chooses the
+/// windows; gather() copies them into a batch.
 class ClipBuffer {
  public:
   ClipBuffer() = default;
-  /// `clips` are the poses of each clip, [frames, dof].
+  /// `clips`: the poses of each clip, [frames, dof].
   ClipBuffer(const Context& context, std::size_t dof, const std::vector<std::span<const float>>& clips)
       : ClipBuffer(context, dof, clips, {.x = dof, .z = dof, .yaw = dof}) {}
   ClipBuffer(const Context& context, std::size_t dof, const std::vector<std::span<const float>>& clips,
@@ -40,12 +41,12 @@ class ClipBuffer {
 
   std::size_t dof() const { return poses_.dim(1); }
 
-  /// The row of a clip's frame, for gather().
+  /// The row of a frame of a clip in the buffer, for gather().
   cl_int row(std::size_t clip, std::size_t frame) const {
     return static_cast<cl_int>(first_rows_[clip] + frame);
   }
 
-  /// Windows of `frames` frames, every `stride`-th from the given rows on: [frames, rows, dof].
+  /// Gathers windows [frames, rows, dof]: `frames` frames from each of the given rows, `stride` rows apart.
   Tensor gather(const std::vector<cl_int>& rows, std::size_t frames, std::size_t stride = 1) const {
     Tensor out(*context_, {frames, rows.size(), dof()});
     context_->launch("layout", "gather_windows", LaunchGrid::items(frames * rows.size()), poses_,

@@ -1,4 +1,4 @@
-// The numbers of a training run, row by row, in a file that any plotting tool reads.
+// The log of a training run: a CSV file, one row of numbers per logged iteration.
 #pragma once
 #include <charconv>
 #include <cstddef>
@@ -18,12 +18,12 @@
 
 namespace motiongan {
 
-/// A table of numbers as CsvLog writes it.
+/// A log as CsvLog writes it.
 struct CsvTable {
   std::vector<std::string> columns;       ///< the first one is "iteration"
   std::vector<std::vector<double>> rows;  ///< [rows][columns]
 
-  /// The values of one column, [rows]. Error where there is no such column.
+  /// The values of one column, [rows]. Throws Error if there is no such column.
   std::vector<double> column(std::string_view name) const {
     for (std::size_t c = 0; c < columns.size(); ++c) {
       if (columns[c] != name) continue;
@@ -47,7 +47,8 @@ inline std::vector<std::string_view> split_at_commas(std::string_view line) {
   }
 }
 
-/// The lines of a file that end in a newline: a last one without it was cut off while it was written.
+/// The lines of a file that end in a newline; an unterminated last line is an incomplete write and is
+/// dropped.
 inline std::vector<std::string> whole_lines(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   std::vector<std::string> out;
@@ -60,7 +61,7 @@ inline std::vector<std::string> whole_lines(const std::filesystem::path& path) {
   return out;
 }
 
-/// The numbers of one line. Error with file and line number where it has not `columns` of them.
+/// Parses one line. Throws Error, naming file and line, unless it has `columns` numbers.
 inline std::vector<double> csv_numbers(std::string_view line, std::size_t columns, std::size_t number,
                                        const std::filesystem::path& path) {
   std::vector<double> out;
@@ -71,14 +72,14 @@ inline std::vector<double> csv_numbers(std::string_view line, std::size_t column
             field, "' is not a number");
     out.push_back(value);
   }
-  require(out.size() == columns, path.string(), ":", number, ": ", out.size(), " numbers; the header names ",
-          columns, " columns");
+  require(out.size() == columns, path.string(), ":", number, ": ", out.size(), " numbers, expected ", columns,
+          " as in the header");
   return out;
 }
 
 }  // namespace detail
 
-/// Reads a log that CsvLog wrote; a last row that was cut off is left out. Error for anything else.
+/// Reads a log that CsvLog wrote, without an incomplete last row. Throws Error for any other file.
 inline CsvTable read_csv_log(const std::filesystem::path& path) {
   require(std::filesystem::is_regular_file(path), "there is no log at ", path.string());
   const std::vector<std::string> lines = detail::whole_lines(path);
@@ -90,21 +91,21 @@ inline CsvTable read_csv_log(const std::filesystem::path& path) {
   return out;
 }
 
-/// Appends rows of numbers to a CSV file, the iteration first; a row is out of this process when append
-/// returns, so that a run that dies keeps its log.
+/// Appends rows of numbers to a CSV file, the iteration first. Each row is flushed, so that a run that dies
+/// keeps its log.
 class CsvLog {
  public:
-  /// Begins the log at `path` with the columns "iteration" and `columns`. With `resume_after`, a log that is
-  /// there is continued: its rows up to that iteration stay, later ones (which a resumed run computes again)
-  /// and one that was cut off go. Error where the file's header differs; where a new run would write over a
-  /// log that has rows; where the file cannot be written.
+  /// Opens the log at `path` with the columns "iteration" and `columns`. With `resume_after`, an existing log
+  /// is continued: rows up to that iteration are kept; later rows, which a resumed run computes again, and an
+  /// incomplete last row are removed. Throws Error if the header differs, if a new run would overwrite rows,
+  /// or if the file cannot be written.
   CsvLog(std::filesystem::path path, const std::vector<std::string>& columns,
          std::optional<std::uint64_t> resume_after = std::nullopt)
       : path_(std::move(path)), columns_(columns.size()) {
     std::string header = "iteration";
     for (const std::string& name : columns) {
       require(!name.empty() && name.find_first_of(",\"\r\n") == std::string::npos, "'", name,
-              "' cannot name a column of a log: it is empty or has a comma, a quote or a line break");
+              "' is not a valid column name: it is empty or contains a comma, a quote or a line break");
       header += "," + name;
     }
     std::vector<std::string> lines;
@@ -119,36 +120,37 @@ class CsvLog {
     for (std::size_t i = 1; i < lines.size(); ++i) {
       const double iteration = detail::csv_numbers(lines[i], columns_ + 1, i + 1, path_).front();
       require(iteration >= 0 && iteration < 1e18, path_.string(), ":", i + 1, ": ", iteration,
-              " is not the number of an iteration");
+              " is not an iteration number");
       if (iteration > static_cast<double>(*resume_after)) continue;
       kept += lines[i] + "\n";
       last_ = static_cast<std::uint64_t>(iteration);
     }
     replace_with(kept);
     out_.open(path_, std::ios::binary | std::ios::app);
-    require(out_.is_open(), "cannot append to the log ", path_.string(), "; check that it may be written to");
+    require(out_.is_open(), "cannot append to the log ", path_.string(), "; check that it is writable");
   }
 
-  /// Adds a row. Iterations must grow; `values` are in the order of the columns.
+  /// Appends a row; `values` are in the order of the columns. Throws Error if their number is wrong, if the
+  /// iteration does not increase, or if writing fails.
   void append(std::uint64_t iteration, std::span<const double> values) {
     require(values.size() == columns_, "a row of ", values.size(), " values for the log ", path_.string(),
-            ", which has ", columns_, " columns beside the iteration");
+            ", expected ", columns_, " besides the iteration");
     require(!last_ || iteration > *last_, "iteration ", iteration, " comes after iteration ",
-            last_.value_or(0), " in the log ", path_.string(), "; iterations must grow");
+            last_.value_or(0), " in the log ", path_.string(), "; iterations must increase");
     std::string row = std::to_string(iteration);
     for (const double value : values) {
       char text[40];
-      const auto [end, problem] = std::to_chars(text, text + sizeof text, value);  // shortest exact form
+      const auto [end, problem] = std::to_chars(text, text + sizeof text, value);  // shortest exact text
       row.append(",").append(text, problem == std::errc{} ? end : text);
     }
     row += "\n";
     out_.write(row.data(), static_cast<std::streamsize>(row.size()));
     out_.flush();
-    require(out_.good(), "cannot write to the log ", path_.string(), "; is there room on the disk?");
+    require(out_.good(), "cannot write to the log ", path_.string(), "; the disk may be full");
     last_ = iteration;
   }
 
-  /// The last iteration in the file, where there is one.
+  /// The last iteration in the file, if there is one.
   std::optional<std::uint64_t> last_iteration() const { return last_; }
 
  private:
@@ -164,7 +166,7 @@ class CsvLog {
     std::error_code ignored;
     std::filesystem::remove(beside, ignored);
     throw Error("cannot write the log ", path_.string(),
-                "; check that the folder exists and may be written to");
+                "; check that the folder exists and is writable");
   }
 
   std::filesystem::path path_;

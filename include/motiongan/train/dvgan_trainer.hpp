@@ -1,4 +1,4 @@
-// Training DVGAN: critic steps and generator steps, nothing read back between them.
+// Training of DVGAN (Lin & Amer, section 5.2). Nothing is read back from the device between steps.
 #pragma once
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/networks/dvgan_critic.hpp"
@@ -9,22 +9,22 @@
 
 namespace motiongan {
 
-/// The defaults are the paper's (Lin & Amer, section 4).
+/// Options of DvganTrainer. The defaults are the paper's (Lin & Amer, section 5.2).
 struct DvganTrainOptions {
   std::size_t iterations = 20'000;  ///< each is `critic_steps` critic steps and one generator step
   std::size_t critic_steps = 10;
   std::size_t batch = 64;
-  double lambda_gp = 10;    ///< weight of the gradient penalty
-  AdamOptions adam{};       ///< of both networks
-  bool input_shift = true;  ///< move each real/fake pair by up to N/2 frames at the critic's input
+  double lambda_gp = 10;    ///< weight of the gradient penalty (eq. 3)
+  AdamOptions adam{};       ///< used for both networks
+  bool input_shift = true;  ///< shift each real/fake pair by up to +-N/2 frames at the critic's input
   DvganCriticOptions critic{};
-  /// Fraction of the steps whose fakes are completions: they begin with 1 to N/2 frames of the real motion (one
-  /// number for the batch). The paper has none; a generator that completed in training completes better.
-  /// Needs an RNN generator.
+  /// Fraction of the steps, 0..1, whose fakes are completions of the first 1 to N/2 frames of the real motion
+  /// (the same number for the whole batch). Not in the paper: training on completions improves completion.
+  /// Above 0 it requires an RNN generator.
   double completion_share = 0;
   std::uint64_t seed = 1;
 
-  /// Steps of an iteration that have random numbers of their own.
+  /// Update steps in an iteration; each draws its own random numbers.
   std::size_t steps() const { return critic_steps + 1; }
 
   void list_fields(FieldList& list) {
@@ -59,7 +59,7 @@ struct DvganTrainOptions {
 struct DvganLosses {
   double wasserstein = 0;  ///< mean D(real) - mean D(fake) of the last critic step
   double penalty = 0;      ///< mean (|gradient| - 1)^2
-  double generator = 0;    ///< -mean D(fake) of the generator's step
+  double generator = 0;    ///< -mean D(fake) of the generator step
 
   /// The columns of the log.
   std::vector<NamedLoss> named() const {
@@ -67,9 +67,10 @@ struct DvganLosses {
   }
 };
 
-/// Trains a Dvgan on a data set. One critic step and one generator step are also callable by themselves.
+/// Trains a Dvgan on a data set. Critic and generator steps can also be called one by one.
 class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> {
  public:
+  /// Throws Error if the data set's format or an option does not fit the model.
   DvganTrainer(Dvgan& model, const motion::Dataset& data, const DvganTrainOptions& options)
       : ModelTrainer(model, options),
         windows_(model.context(), data),
@@ -94,7 +95,7 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
             {"critic", named_parameters(critic_), &critic_adam_}};
   }
 
-  /// critic_steps critic steps and a generator step.
+  /// One iteration: critic_steps critic steps and one generator step.
   void iterate() override {
     const std::size_t first = iteration_ * options_.steps();
     for (std::size_t i = 0; i < options_.critic_steps; ++i)
@@ -103,7 +104,7 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
     ++iteration_;
   }
 
-  /// One update of the critic; `step` numbers the step's random numbers.
+  /// One update of the critic; `step` selects its random numbers.
   void critic_step(std::uint32_t step) {
     const Context& context = model_.context();
     const RandomKey key{.seed = options_.seed, .step = step};
@@ -122,17 +123,17 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
                     random_uniform(context, key.with(RandomStream::interpolation), options_.batch), options_.lambda_gp);
     critic_adam_.step(grad(critic_loss_.loss, critic_adam_.parameters()));
     critic_loss_ = {
-        {}, critic_loss_.wasserstein.detach(), critic_loss_.penalty.detach(), {}};  // lets go of the graph
+        {}, critic_loss_.wasserstein.detach(), critic_loss_.penalty.detach(), {}};  // drops the graph
   }
 
-  /// One update of the generator; the critic's parameters get no gradient.
+  /// One update of the generator; no gradient flows to the critic's parameters.
   void generator_step(std::uint32_t step) {
     const RandomKey key{.seed = options_.seed, .step = step};
     const CaptionedBatch batch = windows_.draw(options_.seed, step, options_.batch);
     const Var fake = shifted(make_fake(batch, key), draw_shift(key));
     Var h_txt;
     {
-      const NoGrad values_only;  // the critic's view of the text does not depend on the generator
+      const NoGrad values_only;  // the critic's text encoding does not depend on the generator
       h_txt = critic_.encode_text(batch.text);
     }
     const Var loss = generator_loss(critic_(fake, h_txt));
@@ -146,7 +147,7 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
   }
 
  private:
-  /// A fake for each real motion of the batch, of its caption.
+  /// A fake [N, B, M] with the captions of the batch.
   Var make_fake(const CaptionedBatch& batch, const RandomKey& key) const {
     const RandomKey draw = key.with(RandomStream::seeding);
     const double chance = (static_cast<double>(random_word(draw, 0)) + 0.5) * 0x1p-32;
@@ -156,7 +157,7 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
     return model_.complete(batch.text, slice(Var::constant(batch.motion), 0, 0, given), key);
   }
 
-  /// One shift of a whole number of frames in [-N/2, N/2] for each sample; empty when shifting is off.
+  /// A uniform shift in frames, [-N/2, N/2], for each sample: [B]; empty if shifting is off.
   Indices draw_shift(const RandomKey& key) const {
     if (!options_.input_shift) return {};
     const std::size_t frames = model_.format().frames, half = frames / 2;
@@ -174,7 +175,7 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
   Var generator_loss_;
 };
 
-/// Trains a Dvgan from start to end, see run_training().
+/// Trains a Dvgan: a whole run, see run_training().
 inline RunResult train(Dvgan& model, const motion::Dataset& data, const DvganTrainOptions& options,
                        const RunOptions& run = {}) {
   DvganTrainer trainer(model, data, options);

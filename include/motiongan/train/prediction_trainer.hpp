@@ -1,4 +1,4 @@
-// Training the baselines of motion completion.
+// Training of the motion-completion baselines.
 #pragma once
 #include <memory>
 
@@ -10,20 +10,22 @@
 
 namespace motiongan {
 
-/// Defaults are those of residual seq2seq (Martinez, Black & Romero 2017), and for the noise the schedule of the
-/// published code of structural RNNs (Jain et al. 2016), which trained ERD and LSTM-3LR too.
+/// Options of PredictionTrainer. The defaults are those of residual seq2seq (Martinez, Black & Romero 2017);
+/// the noise schedule is that of the published code of structural RNNs (Jain et al. 2016), which also trains
+/// ERD and LSTM-3LR.
 struct PredictionTrainOptions {
   std::size_t iterations = 100'000;
   std::size_t batch = 16;
-  std::size_t prefix = 50, future = 25;                                   ///< frames given and frames to predict
-  SgdOptions sgd{};                                                       ///< of seq2seq
-  AdamOptions adam{.learning_rate = 1e-3, .beta1 = 0.9, .beta2 = 0.999};  ///< of the other three
-  /// Of erd and lstm_3lr: standard deviation of the normal noise that is added to the normalised poses that
-  /// they see, from an iteration on.
+  std::size_t prefix = 50, future = 25;                                   ///< frames given, frames to predict
+  SgdOptions sgd{};                                                       ///< used for seq2seq
+  AdamOptions adam{.learning_rate = 1e-3, .beta1 = 0.9, .beta2 = 0.999};  ///< used for the other three
+  /// For erd and lstm_3lr: standard deviation of the Gaussian noise added to the normalised input poses, each
+  /// value from its iteration on.
   std::vector<ScheduleStage> noise{{250, 0.01}, {500, 0.05}, {1000, 0.1}, {1300, 0.2},
                                    {2000, 0.3}, {2500, 0.5}, {3300, 0.7}};
   std::uint64_t seed = 1;
 
+  /// Update steps in an iteration.
   std::size_t steps() const { return 1; }
 
   void list_fields(FieldList& list) {
@@ -49,27 +51,29 @@ struct PredictionLosses {
   std::vector<NamedLoss> named() const { return {{"error", error}}; }
 };
 
+/// Trains a PredictionModel: seq2seq with SGD, the others with Adam.
 class PredictionTrainer : public ModelTrainer<PredictionModel, PredictionTrainOptions, PredictionLosses> {
  public:
+  /// Throws Error if data or options do not fit, or if no sequence has prefix + future frames.
   PredictionTrainer(PredictionModel& model, const PredictionData& data, const PredictionTrainOptions& options)
       : ModelTrainer(model, options),
         windows_(model.context(), data, options.prefix + options.future),
         optimizer_(make_optimizer(model, options)) {
     require(data.dof == model.dof() && data.action_count == model.action_count(), "the data (", data.dof,
-            " numbers a pose, ", data.action_count, " actions) do not fit the model (", model.dof(), ", ",
-            model.action_count(), ")");
+            " dof, ", data.action_count, " actions) do not fit the model (", model.dof(), " dof, ",
+            model.action_count(), " actions)");
     const std::vector<ScheduleStage>& noise = options.noise;
     for (std::size_t i = 0; i < noise.size(); ++i)
       require(noise[i].value >= 0 && (i == 0 || noise[i - 1].iteration < noise[i].iteration), "noise stage ",
               i + 1, " (from iteration ", noise[i].iteration, " on, deviation ", noise[i].value,
-              "): iterations must grow and deviations be at least 0");
+              "): iterations must increase and deviations be at least 0");
   }
 
   std::vector<TrainedPart> parts() override {
     return {{"generator", named_parameters(model_), optimizer_.get()}};
   }
 
-  /// The deviation of the noise of an iteration.
+  /// The standard deviation of the input noise at an iteration.
   double noise_at(std::size_t iteration) const {
     double deviation = 0;
     for (const ScheduleStage& stage : options_.noise)
@@ -104,14 +108,14 @@ class PredictionTrainer : public ModelTrainer<PredictionModel, PredictionTrainOp
     return Var::constant(batch.windows.view(first * options_.batch * dof, {count, options_.batch, dof}));
   }
 
-  /// The model continues the prefix on its own output.
+  /// MSE of the future that the model predicts from the prefix, fed with its own output.
   Var copy_loss(const PredictionBatch& batch) const {
     const Var made =
         model_.forward(frames_of(batch, 0, options_.prefix), Var::constant(batch.actions), options_.future);
     return mean(square(made - frames_of(batch, options_.prefix, options_.future)));
   }
 
-  /// The model predicts the pose after each one of the window, which it sees with noise.
+  /// MSE of the next pose predicted at each frame of the window (teacher forcing), with noise on the input.
   Var one_step_loss(const PredictionBatch& batch, std::uint32_t step) const {
     const std::size_t count = options_.prefix + options_.future - 1;
     Var seen = frames_of(batch, 0, count);
@@ -128,7 +132,7 @@ class PredictionTrainer : public ModelTrainer<PredictionModel, PredictionTrainOp
   Var loss_;
 };
 
-/// Trains a baseline of motion completion from start to end, see run_training().
+/// Trains a motion-completion baseline: a whole run, see run_training().
 inline RunResult train(PredictionModel& model, const PredictionData& data,
                        const PredictionTrainOptions& options, const RunOptions& run = {}) {
   PredictionTrainer trainer(model, data, options);

@@ -1,4 +1,4 @@
-// Batches of windows of pose sequences, drawn on the device from sequences that stay there.
+// Batches of windows for training the motion-completion baselines, gathered on the device.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -11,33 +11,34 @@
 
 namespace motiongan {
 
-/// What predictors are trained on.
+/// Training data of the motion-completion baselines.
 struct PredictionData {
-  std::size_t dof = 0;
+  std::size_t dof = 0;                        ///< channels of a pose
   std::vector<std::vector<float>> sequences;  ///< normalised poses, each [frames, dof]
-  std::vector<std::size_t> actions;           ///< of each sequence
-  std::size_t action_count = 0;
+  std::vector<std::size_t> actions;           ///< action of each sequence, [sequences]
+  std::size_t action_count = 0;               ///< Y
 
   std::size_t frames(std::size_t sequence) const { return sequences.at(sequence).size() / dof; }
 
-  /// Error, naming the sequence, for data that cannot be.
+  /// Throws Error, naming the sequence, if sizes, actions or values are not valid.
   void check() const {
-    require(dof > 0 && action_count > 0, "prediction data: ", dof, " numbers a pose and ", action_count,
-            " actions, expected at least 1 of each");
+    require(dof > 0 && action_count > 0, "prediction data: dof is ", dof, " and action_count is ",
+            action_count, ", expected at least 1 of each");
     require(!sequences.empty() && actions.size() == sequences.size(), "prediction data: ", sequences.size(),
-            " sequences with ", actions.size(), " actions, expected an action for each, and at least one");
+            " sequences with ", actions.size(),
+            " actions, expected at least one sequence and one action per sequence");
     for (std::size_t s = 0; s < sequences.size(); ++s) {
       require(sequences[s].size() % dof == 0, "prediction data: sequence ", s, " has ", sequences[s].size(),
-              " numbers, no whole poses of ", dof);
+              " values, expected a multiple of dof (", dof, ")");
       require(actions[s] < action_count, "prediction data: sequence ", s, " has action ", actions[s],
               ", expected less than ", action_count);
       for (const float x : sequences[s])
-        require(std::isfinite(x), "prediction data: sequence ", s, " holds ", x,
-                "; every number must be finite");
+        require(std::isfinite(x), "prediction data: sequence ", s, " contains ", x,
+                ", expected finite values");
     }
   }
 
-  /// What a run was trained on, as a table: sequence, action, frames.
+  /// Writes a tab-separated table of the sequences: sequence, action, frames.
   void write_split(const std::filesystem::path& path) const {
     std::string text = "sequence\taction\tframes\n";
     for (std::size_t s = 0; s < sequences.size(); ++s)
@@ -48,16 +49,17 @@ struct PredictionData {
   }
 };
 
-/// A batch: windows [frames, B, dof] and the actions of their sequences, one-hot [B, Y].
+/// A batch: windows [frames, B, dof] and their actions, one-hot [B, Y].
 struct PredictionBatch {
   Tensor windows, actions;
 };
 
-/// All sequences in one device buffer. A batch is a function of (seed, step) alone, so a resumed run draws
-/// what an unbroken one would have drawn.
+/// Draws windows from sequences that are kept in one device buffer. A batch depends only on (seed, step), so
+/// a resumed run draws the same batches as an uninterrupted one.
 class PredictionSampler {
  public:
-  /// Sequences shorter than `frames` are not drawn from; Error where no other is left.
+  /// Sequences shorter than `frames` are left out. Throws Error if none is long enough or the data is
+  /// invalid.
   PredictionSampler(const Context& context, const PredictionData& data, std::size_t frames)
       : context_(context), frames_(frames), action_count_(data.action_count) {
     data.check();
@@ -70,11 +72,11 @@ class PredictionSampler {
       poses.emplace_back(data.sequences[s]);
     }
     require(!sequences_.empty(), "no sequence has ", frames, " frames (the longest has ", longest,
-            "): prefix and future together must fit");
+            "); reduce prefix or future");
     buffer_ = ClipBuffer(context, data.dof, poses);
   }
 
-  /// `size` windows: the sequence uniform, then its start.
+  /// Draws `size` windows: a uniform sequence, then a uniform start frame.
   PredictionBatch draw(std::uint64_t seed, std::uint32_t step, std::size_t size) const {
     const RandomKey key{.seed = seed, .stream = RandomStream::windows, .step = step};
     std::vector<cl_int> rows;

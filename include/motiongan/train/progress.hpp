@@ -1,10 +1,9 @@
-// What a user sees while a training runs: one line on a terminal, lines now and then in a file.
+// Progress display of a training run: a bar on a terminal, plain lines at intervals elsewhere.
 #pragma once
 #include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -18,26 +17,29 @@
 #include <utility>
 #include <vector>
 
+#include "motiongan/core/clock.hpp"
 #include "motiongan/train/csv_log.hpp"
 
 namespace motiongan {
 
+/// A number shown next to the progress, with its name.
 using NamedValue = std::pair<std::string_view, double>;
 
+/// Options of ProgressBar.
 struct ProgressOptions {
   std::string label = "iteration";
   std::FILE* out = stderr;
-  double terminal_interval = 0.1;         ///< seconds between two drawings on a terminal
-  double plain_interval = 10;             ///< seconds between two lines elsewhere
-  std::optional<bool> terminal = {};      ///< told rather than found out by isatty
-  std::optional<std::size_t> width = {};  ///< columns of the terminal, told rather than asked for
+  double terminal_interval = 0.1;         ///< seconds between redraws on a terminal
+  double plain_interval = 10;             ///< seconds between lines elsewhere
+  std::optional<bool> terminal = {};      ///< whether `out` is a terminal; not set: isatty()
+  std::optional<std::size_t> width = {};  ///< columns of the terminal; not set: queried
   double smoothing = 20;                  ///< seconds over which the rate is averaged
-  std::function<double()> now = {};       ///< seconds from any beginning; the steady clock where empty
+  std::function<double()> now = {};       ///< clock in seconds; empty: clock_seconds()
 };
 
 namespace detail {
 
-/// "01:42:10", "2d 01:42:10", or "--:--:--" where the time is not known.
+/// "01:42:10", "2d 01:42:10", or "--:--:--" if the time is not known.
 inline std::string clock_text(double seconds) {
   if (!(seconds >= 0) || seconds > 1e8) return "--:--:--";
   const auto total = static_cast<unsigned long>(std::lround(seconds));
@@ -50,7 +52,7 @@ inline std::string clock_text(double seconds) {
   return text;
 }
 
-/// "3.2 it/s", or "4.1 s/it" where an iteration takes longer than a second.
+/// "3.2 it/s", or "4.1 s/it" if an iteration takes longer than a second.
 inline std::string rate_text(double per_second) {
   if (!(per_second > 0)) return "- it/s";
   char text[32];
@@ -59,8 +61,8 @@ inline std::string rate_text(double per_second) {
   return text;
 }
 
-/// One line of at most `width` characters: first the bar gets shorter, then it goes, then values go from the
-/// end, and last of all the text is cut.
+/// One line of at most `width` characters. To fit, the bar is shortened, then dropped, then values are
+/// dropped from the end, and finally the text is truncated.
 inline std::string progress_line(std::string_view label, std::size_t done, std::size_t total, double rate,
                                  std::span<const NamedValue> values, std::size_t width) {
   std::string head(label);
@@ -99,8 +101,7 @@ inline std::string progress_line(std::string_view label, std::size_t done, std::
 
 }  // namespace detail
 
-/// Shows how far something has come: on a terminal one line drawn over and over, otherwise a line now and
-/// then.
+/// Shows progress: on a terminal one line that is redrawn in place, otherwise a new line at intervals.
 class ProgressBar {
  public:
   explicit ProgressBar(std::size_t total = 0, ProgressOptions options = {})
@@ -111,8 +112,8 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
   ~ProgressBar() { end_line(); }
 
-  /// Sets the number of steps, and how many of them were done in an earlier run; the rate counts only this
-  /// one's.
+  /// Sets the number of steps in all and of those done before, in an earlier run; the rate ignores the
+  /// latter.
   void start(std::size_t total, std::size_t done = 0) {
     total_ = total;
     done_ = done;
@@ -121,11 +122,11 @@ class ProgressBar {
     last_drawn_.reset();
   }
 
-  /// `done` steps are done; draws where it is time to. Cheap enough for every step.
+  /// Reports that `done` steps are done; redraws if the interval has passed. Cheap enough to call every step.
   void update(std::size_t done, std::span<const NamedValue> values = {}) {
     const double time = now();
     if (!last_time_) {
-      // The first report of a bar that was not started: how long its steps took is not known.
+      // First report without start(): the time of these steps is not known.
       done_ = done;
     } else if (time > *last_time_ || done > done_) {
       const double passed = time - *last_time_, fade = std::exp(-passed / options_.smoothing);
@@ -143,7 +144,7 @@ class ProgressBar {
     update(done, std::span<const NamedValue>(values.begin(), values.size()));
   }
 
-  /// Prints a line of its own without spoiling the bar.
+  /// Prints a separate line without disturbing the bar.
   void note(std::string_view text) {
     clear();
     std::fprintf(options_.out, "%.*s\n", static_cast<int>(text.size()), text.data());
@@ -151,24 +152,22 @@ class ProgressBar {
     std::fflush(options_.out);
   }
 
-  /// Draws the last state once more and ends the line. To be called once; a bar that goes out of scope
-  /// without it only ends its line.
+  /// Draws the final state and ends the line. Call it once; without it the destructor only ends the line.
   void finish() {
     if (last_time_ && (!drawn_ || *drawn_ != done_ || terminal_)) draw(now());
     end_line();
     last_time_.reset();
   }
 
-  /// Steps per second, averaged over the last ones; 0 where not known yet.
+  /// Steps per second, a moving average; 0 if not known yet.
   double rate() const { return elapsed_ > 0 ? counted_ / elapsed_ : 0; }
 
  private:
   double now() const {
-    if (options_.now) return options_.now();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    return options_.now ? options_.now() : clock_seconds();
   }
 
-  /// Asked for at every drawing, for windows change.
+  /// Queried at every redraw, because the window may be resized.
   std::size_t width() const {
     if (options_.width) return *options_.width;
     winsize size{};
@@ -184,7 +183,7 @@ class ProgressBar {
     std::vector<NamedValue> values;
     for (const auto& [name, value] : values_) values.emplace_back(name, value);
     clear();
-    // In the last column some terminals would begin a new line. A file has no width.
+    // Some terminals wrap after the last column, so it stays free. A file has no width.
     const std::size_t room = terminal_ ? std::max<std::size_t>(width(), 2) - 1 : 1000;
     std::string line = detail::progress_line(options_.label, done_, total_, rate(), values, room);
     if (!terminal_) line += "\n";
@@ -205,7 +204,7 @@ class ProgressBar {
   std::size_t total_ = 0, done_ = 0;
   bool terminal_ = false, open_ = false;
   double counted_ = 0,
-         elapsed_ = 0;  // steps and seconds, both fading with time, so that their ratio is a mean
+         elapsed_ = 0;  // steps and seconds, exponentially decayed: their ratio is a moving average
   std::optional<double> last_time_, last_drawn_;
   std::optional<std::size_t> drawn_;
   std::vector<std::pair<std::string, double>> values_;

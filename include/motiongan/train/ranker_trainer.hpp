@@ -1,4 +1,4 @@
-// Training a ranker (Lin & Amer, section 4.1): of K descriptions, the right one for a motion.
+// Training of a ranker (Lin & Amer, section 6.2): cross-entropy over K candidate descriptions of a motion.
 #pragma once
 #include <set>
 
@@ -11,13 +11,15 @@
 
 namespace motiongan {
 
+/// Options of RankerTrainer.
 struct RankerTrainOptions {
   std::size_t iterations = 2000;
   std::size_t batch = 64;
-  std::size_t descriptions = 250;  ///< K of a step: those of its clips, and others drawn
+  std::size_t descriptions = 250;  ///< K, candidates in a step: those of its clips, and random others
   AdamOptions adam{.learning_rate = 1e-4, .beta1 = 0.9, .beta2 = 0.999};
   std::uint64_t seed = 1;
 
+  /// Update steps in an iteration.
   std::size_t steps() const { return 1; }
 
   void list_fields(FieldList& list) {
@@ -37,16 +39,18 @@ struct RankerTrainOptions {
 /// Losses of the last iteration.
 struct RankerLosses {
   double loss = 0;     ///< mean -log p(right description), nats
-  double recall1 = 0;  ///< fraction of the batch whose best description is right
+  double recall1 = 0;  ///< fraction of the batch whose top-ranked description is right
 
   /// The columns of the log.
   std::vector<NamedLoss> named() const { return {{"loss", loss}, {"recall1", recall1}}; }
 };
 
-/// Trains a Ranker on the training clips of a data set. For a window of a clip with several descriptions, all
-/// of them are right, in equal parts.
+/// Trains a Ranker on the training clips of a data set. If a clip has several descriptions, the target
+/// probability is uniform over them.
 class RankerTrainer : public ModelTrainer<Ranker, RankerTrainOptions, RankerLosses> {
  public:
+  /// Throws Error if the data set's format or an option does not fit, or if it has fewer than two distinct
+  /// descriptions.
   RankerTrainer(Ranker& model, const motion::Dataset& data, const RankerTrainOptions& options)
       : ModelTrainer(model, options),
         windows_(model.context(), data),
@@ -59,11 +63,12 @@ class RankerTrainer : public ModelTrainer<Ranker, RankerTrainOptions, RankerLoss
       sentences_.push_back(data.format.vocabulary.encode(text));
   }
 
+  /// The distinct descriptions of the training clips.
   const motion::Descriptions& descriptions() const { return descriptions_; }
   std::vector<TrainedPart> parts() override { return {{"ranker", named_parameters(model_), &adam_}}; }
 
-  /// The descriptions that step `step` chooses among: all that the clips have, and others by chance until
-  /// there are K; in increasing order.
+  /// The candidate descriptions of a step, in increasing order: all descriptions of its clips, and random
+  /// others up to K in all.
   std::vector<std::size_t> candidates(std::span<const std::size_t> clips, std::uint32_t step) const {
     std::set<std::size_t> chosen;
     for (const std::size_t c : clips)
@@ -123,10 +128,10 @@ class RankerTrainer : public ModelTrainer<Ranker, RankerTrainOptions, RankerLoss
   std::vector<std::vector<int>> sentences_;
   Adam adam_;
   Var loss_, scores_;
-  std::vector<float> right_;  // of the last step, [B, K]
+  std::vector<float> right_;  // targets of the last step, [B, K]
 };
 
-/// Trains a ranker from start to end, see run_training(); it is saved as `ranker.safetensors`.
+/// Trains a ranker: a whole run, see run_training(). The ranker is saved as ranker.safetensors.
 inline RunResult train(Ranker& model, const motion::Dataset& data, const RankerTrainOptions& options,
                        const RunOptions& run = {}) {
   RankerTrainer trainer(model, data, options);

@@ -1,10 +1,10 @@
-// A whole training run of any trainer: iterations, log, checkpoints, stopping and resuming.
+// A whole training run with any trainer: iterations, log, checkpoints, stopping and resuming.
 #pragma once
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <memory>
 
+#include "motiongan/core/clock.hpp"
 #include "motiongan/train/checkpoint.hpp"
 #include "motiongan/train/csv_log.hpp"
 
@@ -13,18 +13,18 @@ namespace motiongan {
 /// Called after every iteration; returns true to stop the run.
 using RunCallback = std::function<bool(const Trainer& trainer)>;
 
-/// How a run is kept and watched; none of it changes what is computed.
+/// How a run is saved and monitored; none of it changes the result of training.
 struct RunOptions {
   std::filesystem::path save_dir{};  ///< folder of model, checkpoint, log and split; empty: nothing is written
   bool resume = false;               ///< continue the run in save_dir
-  double save_every_minutes = 5;     ///< a checkpoint is also written at the end, and when the run is stopped
-  std::size_t log_every = 1;         ///< iterations between two rows of the log; each row waits for the device
-  double max_minutes = 0;            ///< stop after that long; 0: no limit
-  std::function<bool()> should_stop = {};  ///< asked after every iteration
+  double save_every_minutes = 5;     ///< a checkpoint is also written when the run ends or is stopped
+  std::size_t log_every = 1;         ///< iterations between rows of the log; each row waits for the device
+  double max_minutes = 0;            ///< stop after this time; 0: no limit
+  std::function<bool()> should_stop = {};  ///< called after every iteration; true stops the run
   /// Called with every row of the log.
   std::function<void(std::size_t iteration, std::span<const NamedLoss> losses)> report = {};
-  std::vector<RunCallback> callbacks = {};  ///< called in their order, before a periodic checkpoint
-  RunNotes notes{};                         ///< kept in the checkpoint, where read_run_record() finds them
+  std::vector<RunCallback> callbacks = {};  ///< called in this order, before a periodic checkpoint
+  RunNotes notes{};                         ///< stored in the checkpoint; read_run_record() returns them
 
   void list_fields(FieldList& list) {
     list.add(max_minutes, {.key = "max_minutes",
@@ -41,21 +41,21 @@ struct RunOptions {
   }
 };
 
-/// The value of a loss among those of a row; NaN if there is none of that name.
+/// The loss called `name`; NaN if there is none.
 inline double loss_of(std::span<const NamedLoss> losses, std::string_view name) {
   for (const NamedLoss& loss : losses)
     if (name == loss.name) return loss.value;
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-/// What a save_dir holds. A run has those of the networks that it trains.
+/// The files in a save_dir; there is one file for each network that the run trains.
 struct RunFiles {
   std::filesystem::path folder;
   std::filesystem::path generator() const { return folder / "generator.safetensors"; }
   std::filesystem::path critic() const { return network("critic"); }
   std::filesystem::path checkpoint() const { return folder / "checkpoint.safetensors"; }
   std::filesystem::path log() const { return folder / "log.csv"; }
-  /// The log of a run that was killed before its first checkpoint, after another one has begun in its place.
+  /// Where a new run moves the log of a run that was killed before its first checkpoint.
   std::filesystem::path unsaved_log() const { return folder / "log.unsaved.csv"; }
   std::filesystem::path split() const { return folder / "split.tsv"; }
   std::filesystem::path network(const std::string& name) const { return folder / (name + ".safetensors"); }
@@ -63,33 +63,27 @@ struct RunFiles {
 
 /// How a run ended.
 struct RunResult {
-  std::size_t iterations = 0;  ///< done in all, earlier starts included
-  bool stopped = false;        ///< before all were done
+  std::size_t iterations = 0;  ///< done in total, including those before resuming
+  bool stopped = false;        ///< whether it ended before all iterations were done
 };
 
 namespace detail {
 
-using RunClock = std::chrono::steady_clock;
-
-inline double seconds_since(RunClock::time_point then) {
-  return std::chrono::duration<double>(RunClock::now() - then).count();
-}
-
 /// Stops the run `minutes` from now.
 inline RunCallback time_limit(double minutes) {
-  return [minutes, start = RunClock::now()](const Trainer&) { return seconds_since(start) >= minutes * 60; };
+  return [minutes, start = clock_seconds()](const Trainer&) { return clock_seconds() - start >= minutes * 60; };
 }
 
-/// Writes a row of the log, if there is one, and reports it, every `every` iterations and after the last.
-/// Throws DivergedError for a loss that is no finite number.
+/// Logs (if there is a log) and reports the losses every `every` iterations and after the last one. Throws
+/// DivergedError if a loss is not finite.
 inline RunCallback log_rows(std::shared_ptr<CsvLog> log, std::size_t every, decltype(RunOptions::report) report) {
-  return [=, start = RunClock::now(), last_row = 0.0, rows_since = std::size_t{0}](
+  return [=, start = clock_seconds(), last_row = 0.0, rows_since = std::size_t{0}](
              const Trainer& trainer) mutable {
     ++rows_since;
     const std::size_t iteration = trainer.iteration();
     if (iteration % every != 0 && iteration != trainer.iterations()) return false;
     const std::vector<NamedLoss> losses = trainer.named_losses();
-    const double now = seconds_since(start);
+    const double now = clock_seconds() - start;
     std::vector<double> row{now, static_cast<double>(rows_since) / std::max(now - last_row, 1e-9)};
     last_row = now;
     rows_since = 0;
@@ -105,7 +99,7 @@ inline RunCallback log_rows(std::shared_ptr<CsvLog> log, std::size_t every, decl
   };
 }
 
-/// The checkpoint and one file for each network.
+/// Writes the checkpoint and one file for each network.
 inline void save_run(Trainer& trainer, const RunFiles& files, const RunNotes& notes) {
   save_checkpoint(trainer, files.checkpoint(), notes);
   const std::vector<TrainedPart> parts = trainer.parts();
@@ -119,10 +113,11 @@ inline void save_run(Trainer& trainer, const RunFiles& files, const RunNotes& no
 
 }  // namespace detail
 
-/// Trains until all iterations are done, time is up, or should_stop() or a callback says so; then saves.
-/// `write_split(path)` writes which clips are for training and which for testing. Columns of the log:
-/// iteration, seconds (of this start), iterations_per_second, and the trainer's losses. Throws DivergedError
-/// for losses that are no longer finite; the last checkpoint is kept.
+/// Trains until all iterations are done, the time is up, or should_stop() or a callback returns true; then
+/// saves. `write_split(path)` writes which clips are for training and which for testing. Columns of the log:
+/// iteration, seconds (since this start or resume), iterations_per_second, and the trainer's losses. Throws
+/// Error if save_dir already holds a run and `resume` is off, and DivergedError if a loss is not finite; the
+/// last checkpoint is kept.
 inline RunResult run_training(Trainer& trainer,
                               const std::function<void(const std::filesystem::path&)>& write_split,
                               const RunOptions& run) {
@@ -137,7 +132,7 @@ inline RunResult run_training(Trainer& trainer,
     else
       require(!std::filesystem::exists(files.checkpoint()), files.checkpoint().string(),
               " already holds a run; resume it, or choose another folder");
-    // A log without a checkpoint is of a run that was killed before it saved anything.
+    // A log without a checkpoint belongs to a run that was killed before its first save.
     if (!run.resume && std::filesystem::exists(files.log()))
       std::filesystem::rename(files.log(), files.unsaved_log());
     write_split(files.split());
@@ -152,16 +147,16 @@ inline RunResult run_training(Trainer& trainer,
   if (run.should_stop) callbacks.push_back([&](const Trainer&) { return run.should_stop(); });
   callbacks.insert(callbacks.end(), run.callbacks.begin(), run.callbacks.end());
 
-  auto saved = detail::RunClock::now();
+  auto saved = clock_seconds();
   RunResult result;
   while (trainer.iteration() < trainer.iterations() && !result.stopped) {
     trainer.iterate();
     for (const RunCallback& callback : callbacks) result.stopped |= callback(trainer);
     if (result.stopped) break;
     if (keeps && run.save_every_minutes > 0 &&
-        detail::seconds_since(saved) >= run.save_every_minutes * 60) {
+        clock_seconds() - saved >= run.save_every_minutes * 60) {
       detail::save_run(trainer, files, run.notes);
-      saved = detail::RunClock::now();
+      saved = clock_seconds();
     }
   }
   if (keeps) detail::save_run(trainer, files, run.notes);

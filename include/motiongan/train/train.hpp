@@ -1,4 +1,4 @@
-// Training every kind of model from start to end: train(model, data, options, run).
+// train(model, data, options, run) for every kind of model.
 #pragma once
 #include "motiongan/train/attention_trainer.hpp"
 #include "motiongan/train/baseline_trainer.hpp"

@@ -1,4 +1,4 @@
-// What all trainers have in common: iterations, the networks with their optimizers, losses by name, options.
+// The interface of all trainers: iterations, networks with their optimizers, named losses, options.
 #pragma once
 #include <filesystem>
 #include <span>
@@ -13,7 +13,7 @@
 
 namespace motiongan {
 
-/// A loss, or another number of an iteration, as the log and the progress line call it.
+/// A loss, or another number of an iteration, under its name in the log and the progress line.
 struct NamedLoss {
   const char* name;
   double value;
@@ -26,41 +26,43 @@ struct TrainedPart {
   Optimizer* optimizer = nullptr;
 };
 
-/// The most iterations, of `steps` numbered steps each, that the 24-bit step of a RandomKey allows.
+/// The largest number of iterations of `steps` steps each that the 24-bit step of a RandomKey allows.
 inline std::size_t max_iterations(std::size_t steps) {
   return (std::size_t{1} << 24) / std::max<std::size_t>(steps, 1) - 2;
 }
 
-/// A training of one model. run_training() drives it; save_checkpoint() and load_checkpoint() keep it.
+/// The training of one model. run_training() drives it; save_checkpoint() and load_checkpoint() save and
+/// restore it.
 class Trainer {
  public:
   virtual ~Trainer() = default;
   Trainer(const Trainer&) = delete;
   Trainer& operator=(const Trainer&) = delete;
 
-  /// One iteration: one update of every network, or several as the options say.
+  /// One iteration: one or more updates of every network, as the options say.
   virtual void iterate() = 0;
   /// Iterations done so far.
   std::size_t iteration() const { return iteration_; }
   void set_iteration(std::size_t iteration) { iteration_ = iteration; }
-  /// Iterations in all.
+  /// Total number of iterations.
   virtual std::size_t iterations() const = 0;
 
-  /// The networks; the model is the first.
+  /// The networks and their optimizers; the model comes first.
   virtual std::vector<TrainedPart> parts() = 0;
   /// Losses of the last iteration; reading them waits for the device.
   virtual std::vector<NamedLoss> named_losses() const = 0;
-  /// Their names alone.
+  /// The names of the losses, in the same order.
   virtual std::vector<std::string> loss_names() const = 0;
 
+  /// Writes the model file.
   virtual void save_model(const std::filesystem::path& path) = 0;
   /// Adds the model's metadata and the training options ("training") to a checkpoint.
   virtual void describe(io::SafeTensors& file) const = 0;
-  /// Throws Error, naming what differs, unless a checkpoint is of the same model, data and options.
+  /// Throws Error, naming what differs, unless the checkpoint belongs to the same model, data and options.
   virtual void require_same_run(const io::SafeTensors& file, const std::string& where) const = 0;
 
  protected:
-  /// Throws Error for more iterations, of `steps` steps each, than the random numbers allow.
+  /// Throws Error if `iterations` of `steps` steps each exceed max_iterations().
   Trainer(std::size_t iterations, std::size_t steps) {
     require(iterations <= max_iterations(steps), "iterations is ", iterations, ", expected at most ",
             max_iterations(steps), " with ", steps, " steps each: random numbers count 2^24 steps");
@@ -71,14 +73,14 @@ class Trainer {
 
 namespace detail {
 
-/// Throws Error unless the saved fields of a run's first start and of this one are equal.
+/// Throws Error unless the saved fields of the run (`then`) equal those given now.
 inline void require_same_options(const FieldList& then, const FieldList& now, const std::string& where) {
   for (auto a = then.begin(), b = now.begin(); a != then.end(); ++a, ++b)
     require(!a->info.saved || a->equals(*b), where, ": the run was started with ", a->info.key, " = ",
             a->text(), ", now it is ", b->text(), "; give the same, or choose another folder for a new run");
 }
 
-/// Throws Error unless a data set fits the model: numbers of a pose, frames, and `same_names` (words, classes).
+/// Throws Error unless a data set fits the model: same dof, frames, and `same_names` (words or classes).
 template <class Format>
 void require_same_format(const Format& data, const Format& model, const char* names, std::size_t data_names,
                          std::size_t model_names, bool same_names) {
@@ -98,8 +100,8 @@ inline void require_same_format(const motion::PositionFormat& data, const motion
 
 }  // namespace detail
 
-/// A trainer of a `Model` with `TrainOptions` (fields, iterations, steps()) whose iterations have `Losses`
-/// (named()).
+/// Base of the trainers of a `Model`. `TrainOptions` has list_fields(), iterations and steps(); `Losses` has
+/// named().
 template <class Model, class TrainOptions, class Losses>
 class ModelTrainer : public Trainer {
  public:
@@ -141,7 +143,7 @@ class ModelTrainer : public Trainer {
   }
 
  protected:
-  /// Throws Error for options that are not permitted.
+  /// Throws Error if an option is out of range.
   ModelTrainer(Model& model, const TrainOptions& options)
       : Trainer(options.iterations, (check_options(options), options.steps())),
         model_(model),

@@ -1,4 +1,5 @@
-// The losses of a Wasserstein GAN with gradient penalty (Gulrajani et al. 2017), for any critic of motion.
+// The losses of a Wasserstein GAN with gradient penalty (Gulrajani et al. 2017; Lin & Amer, eq. 3), for any
+// critic of motion.
 #pragma once
 #include <functional>
 
@@ -7,10 +8,11 @@
 
 namespace motiongan {
 
-/// A critic with everything but the motion fixed: [T, B, C] -> [B].
+/// A critic as a function of the motion alone: [T, B, C] -> [B].
 using CriticFn = std::function<Var(const Var& motion)>;
 
-/// eps*real + (1-eps)*fake with one eps [B] per sample; a leaf, so that a gradient with respect to it can be taken.
+/// eps * real + (1 - eps) * fake, with one eps [B] per sample, as a leaf that gradients can be taken with
+/// respect to.
 inline Var interpolate(const Tensor& real, const Tensor& fake, const Tensor& eps) {
   const NoGrad values_only;
   const Var r = Var::constant(real), f = Var::constant(fake);
@@ -18,24 +20,24 @@ inline Var interpolate(const Tensor& real, const Tensor& fake, const Tensor& eps
   return Var::leaf((f + e * (r - f)).value());
 }
 
-/// mean over samples of (|gradient of the critic at x| - 1)^2, [1]; the norm is over all frames and channels
-/// of a sample. Itself differentiable with respect to the critic's parameters. `x` is a leaf.
+/// The gradient penalty, [1]: the mean over samples of (|dD/dx| - 1)^2 at the leaf `x`, the norm taken over
+/// all frames and channels of a sample. Differentiable with respect to the critic's parameters.
 inline Var gradient_penalty(const CriticFn& critic, const Var& x) {
   const Var gradient = grad(critic(x), {x}, {.create_graph = true})[0];
   const Var norm = sqrt(sum_per_sample(square(gradient)) + 1e-12);
   return mean(square(norm - 1));
 }
 
-/// The parts of the critic's loss, each [1].
+/// The critic's loss and its terms, each [1].
 struct CriticLoss {
   Var loss;         ///< mean D(fake) - mean D(real) + lambda * penalty
-  Var wasserstein;  ///< mean D(real) - mean D(fake), the estimate of the distance
+  Var wasserstein;  ///< mean D(real) - mean D(fake), the estimate of the Wasserstein distance
   Var penalty;      ///< mean (|gradient| - 1)^2; empty without a penalty
-  Var scores;       ///< [2B]: of the real, then of the fake motions
+  Var scores;       ///< [2B]: scores of the real, then of the fake motions
 };
 
-/// Without a penalty, for a critic whose weights are clipped (Arjovsky et al. 2017). `critic_of_pairs` scores
-/// real and fake motions joined along the batch, [T, 2B, C] -> [2B].
+/// The critic's loss without a penalty, for weight clipping (Arjovsky et al. 2017). `critic_of_pairs` scores
+/// real and fake motions concatenated along the batch, [T, 2B, C] -> [2B].
 inline CriticLoss critic_loss(const CriticFn& critic_of_pairs, const Tensor& real, const Tensor& fake) {
   const std::size_t batch = real.dim(1);
   CriticLoss out;
@@ -45,8 +47,8 @@ inline CriticLoss critic_loss(const CriticFn& critic_of_pairs, const Tensor& rea
   return out;
 }
 
-/// With the gradient penalty (Gulrajani et al. 2017). `critic` scores a batch of B; eps [B] says where
-/// between real and fake each sample's gradient is taken.
+/// The critic's loss with the gradient penalty (Gulrajani et al. 2017). `critic` scores a batch of B; eps
+/// [B], in 0..1, is the interpolation between fake (0) and real (1) at which each sample's gradient is taken.
 inline CriticLoss critic_loss(const CriticFn& critic_of_pairs, const CriticFn& critic, const Tensor& real,
                               const Tensor& fake, const Tensor& eps, double lambda) {
   CriticLoss out = critic_loss(critic_of_pairs, real, fake);
@@ -55,7 +57,7 @@ inline CriticLoss critic_loss(const CriticFn& critic_of_pairs, const CriticFn& c
   return out;
 }
 
-/// -mean D(fake), [1].
+/// The generator's adversarial loss, -mean D(fake), [1].
 inline Var generator_loss(const Var& fake_scores) { return -mean(fake_scores); }
 
 }  // namespace motiongan

@@ -1,4 +1,4 @@
-// Batches of training windows, drawn on the device from clips that stay there.
+// Batches of captioned windows for training DVGAN and the rankers, gathered on the device.
 #pragma once
 #include "motiongan/core/random.hpp"
 #include "motiongan/data/dataset.hpp"
@@ -7,17 +7,18 @@
 
 namespace motiongan {
 
-/// Real motion with its captions: [N, B, M] and B sentences.
+/// A batch of real motion with its captions.
 struct CaptionedBatch {
-  Tensor motion;
-  Sentences text;
-  std::vector<std::size_t> clips;  ///< of the data set's training clips, which one each window is of
+  Tensor motion;                   ///< [N, B, M], normalised
+  Sentences text;                  ///< B captions
+  std::vector<std::size_t> clips;  ///< [B], the training clip of each window
 };
 
-/// All training clips in one device buffer. A batch is a function of (seed, step) alone, so a resumed run
-/// draws what an unbroken one would have drawn.
+/// Draws windows from the training clips, which are kept in one device buffer. A batch depends only on
+/// (seed, step), so a resumed run draws the same batches as an uninterrupted one.
 class WindowSampler {
  public:
+  /// Throws Error if the data set has no training clips.
   WindowSampler(const Context& context, const motion::Dataset& data)
       : context_(context),
         frames_(data.format.frames),
@@ -37,7 +38,7 @@ class WindowSampler {
     buffer_ = ClipBuffer(context, dof, poses, std::move(form));
   }
 
-  /// `size` windows: a clip, one of its captions and a start for each sample, all uniform.
+  /// Draws `size` windows: for each a clip, one of its captions and a start frame, all uniform.
   CaptionedBatch draw(std::uint64_t seed, std::uint32_t step, std::size_t size) const {
     const RandomKey windows{.seed = seed, .stream = RandomStream::windows, .step = step},
         captions = windows.with(RandomStream::captions);

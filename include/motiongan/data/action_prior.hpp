@@ -12,38 +12,39 @@
 #include "motiongan/data/position_format.hpp"
 
 namespace motiongan {
+namespace motion {
 
 /// The T frames that precede generated motion, at the format's rate.
 struct ActionPrior {
   std::string id;                         ///< id of the clip
   std::size_t first_frame = 0;            ///< in the clip, at the format's rate
-  motion::Skeleton skeleton;              ///< with the clip's own bone lengths
+  Skeleton skeleton;              ///< with the clip's own bone lengths
   std::vector<float> poses;               ///< [T, dof], normalised
-  std::vector<motion::Vec3> positions;    ///< [T, joints], world space, in the clip's unit
-  std::vector<motion::RootTrack> places;  ///< [T], position and heading of the root
+  std::vector<Vec3> positions;    ///< [T, joints], world space, in the clip's unit
+  std::vector<RootTrack> places;  ///< [T], position and heading of the root
 };
 
 /// A BVH motion as a position clip at the format's rate, from the format's root joint down. Throws Error if
 /// the skeleton has no joint of that name.
-inline motion::PositionClip clip_for(const motion::Motion& motion, const motion::PositionFormat& format,
+inline PositionClip clip_for(const Motion& motion, const PositionFormat& format,
                                      const std::string& id) {
   const int root = motion.skeleton.find(format.skeleton().joints.front().name);
   require(root >= 0, "the clip ", id, " has no joint '", format.skeleton().joints.front().name,
           "', the root of the model's skeleton");
-  return motion::positions_of(motion, id, format.rate, root);
+  return positions_of(motion, id, format.rate, root);
 }
 
 /// The T frames of `clip` from `first_frame`, counted at the format's rate; a clip of another rate is
 /// resampled. Throws Error for another skeleton, naming the joints, and if the clip is too short.
-inline ActionPrior prior_from(const motion::PositionClip& clip, const motion::PositionFormat& format,
+inline ActionPrior prior_from(const PositionClip& clip, const PositionFormat& format,
                               std::size_t first_frame = 0) {
   format.require_skeleton(clip.skeleton, "the prior " + clip.id);
   const bool same_rate = std::abs(clip.rate / format.rate - 1) < 1e-6;
-  const motion::PositionClip own = same_rate ? motion::PositionClip{} : motion::resample(clip, format.rate);
-  const motion::PositionClip& at_rate = same_rate ? clip : own;
+  const PositionClip own = same_rate ? PositionClip{} : resample(clip, format.rate);
+  const PositionClip& at_rate = same_rate ? clip : own;
   const std::size_t needed = format.frames, joints = clip.skeleton.size(), end = first_frame + needed;
   const auto seconds = [&](std::size_t frames) {
-    return motion::action_dataset_detail::seconds_text(static_cast<double>(frames) / format.rate);
+    return action_dataset_detail::seconds_text(static_cast<double>(frames) / format.rate);
   };
   const std::size_t left = at_rate.frames - std::min(at_rate.frames, first_frame);
   require(first_frame < at_rate.frames && left >= needed, "the prior ", clip.id, " has ", left, " frames (",
@@ -51,9 +52,9 @@ inline ActionPrior prior_from(const motion::PositionClip& clip, const motion::Po
           " per second; ", needed, " frames (", seconds(needed),
           ") are needed: give a clip of at least that, ", "or start earlier");
   // Root steps are relative to the previous frame, so encode from the clip's start, not from first_frame.
-  const std::span<const motion::Vec3> before(at_rate.positions.data(), end * joints);
+  const std::span<const Vec3> before(at_rate.positions.data(), end * joints);
   ActionPrior out{clip.id, first_frame, clip.skeleton, {}, {}, {}};
-  std::vector<motion::RootTrack> places;
+  std::vector<RootTrack> places;
   try {
     places = format.layout.places(before);
   } catch (const Error& error) {
@@ -69,10 +70,17 @@ inline ActionPrior prior_from(const motion::PositionClip& clip, const motion::Po
   return out;
 }
 
-/// A whole clip of a data set, as world-space positions.
-inline motion::PositionClip clip_of(const motion::ActionDataset& data, const motion::ActionClip& clip) {
-  return {clip.id, clip.skeleton, data.format.rate, clip.frames,
-          data.format.restore(clip.poses, clip.places)};
+inline PositionClip ActionDataset::clip(const ActionClip& clip) const {
+  return {clip.id, clip.skeleton, format.rate, clip.frames, format.restore(clip.poses, clip.places)};
 }
+
+inline ActionPrior ActionDataset::prior(const ActionClip& of, std::size_t first_frame) const {
+  return prior_from(clip(of), format, first_frame);
+}
+
+}  // namespace motion
+
+using motion::ActionPrior;
+using motion::prior_from;
 
 }  // namespace motiongan
