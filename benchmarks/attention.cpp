@@ -42,9 +42,10 @@ Measured critic_step(const Context& context, const AttentionGenerator& generator
       fake = concatenate({x, generator(x, y)}, 0).value();
     }
     const auto judge = [&](const Var& motion) { return critic(motion); };
-    const CriticLoss loss =
-        critic_loss(judge, judge, real, fake,
-                    random_uniform(context, {.seed = 1, .stream = RandomStream::interpolation, .step = ++step}, batch), 10);
+    const CriticLoss loss = critic_loss(
+        judge, judge, real, fake,
+        random_uniform(context, {.seed = 1, .stream = RandomStream::interpolation, .step = ++step}, batch),
+        10);
     adam.step(grad(loss.loss, adam.parameters()));
   });
 }

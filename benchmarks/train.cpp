@@ -46,7 +46,8 @@ std::vector<Measured> ours(const Context& context, double seconds) {
     const Var h_txt = critic.encode_text(text), pairs = concatenate({h_txt, h_txt}, 0);
     const CriticLoss loss = critic_loss(
         [&](const Var& x) { return critic(x, pairs); }, [&](const Var& x) { return critic(x, h_txt); }, real,
-        made, random_uniform(context, {.seed = 1, .stream = RandomStream::interpolation, .step = step}, batch), 10);
+        made,
+        random_uniform(context, {.seed = 1, .stream = RandomStream::interpolation, .step = step}, batch), 10);
     critic_adam.step(grad(loss.loss, critic_adam.parameters()));
   };
   const auto generator_step = [&] {

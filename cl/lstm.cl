@@ -86,13 +86,13 @@ kernel void lstm_cell_backward(global const real* gates, uint gates0, global con
 /// and c_total, which are also those of dh and dc; the direct adjoints of the activations (`direct_gates`,
 /// may be u) and of c; and an addition to the direct adjoint of the previous c.
 kernel void lstm_grad_forward(global const real* u, uint u0, global const real* gates, uint gates0,
-                               global const real* c, uint c0, global const real* c_before, uint c_before0,
-                               global const real* h_total, uint h_total0, global const real* c_total,
-                               uint c_total0, global const real* c_adjoint_before, uint c_adjoint_before0,
-                               global real* direct_before, uint direct_before0, global real* h_adjoint,
-                               uint h_adjoint0, global real* c_adjoint, uint c_adjoint0,
-                               global real* direct_gates, uint direct_gates0, global real* direct,
-                               uint direct0, uint batch, uint k) {
+                              global const real* c, uint c0, global const real* c_before, uint c_before0,
+                              global const real* h_total, uint h_total0, global const real* c_total,
+                              uint c_total0, global const real* c_adjoint_before, uint c_adjoint_before0,
+                              global real* direct_before, uint direct_before0, global real* h_adjoint,
+                              uint h_adjoint0, global real* c_adjoint, uint c_adjoint0,
+                              global real* direct_gates, uint direct_gates0, global real* direct,
+                              uint direct0, uint batch, uint k) {
   const uint columns = (k + VW - 1) / VW, item = get_global_id(0);
   const uint b = item / columns, j = item % columns * VW;
   if (b >= batch) return;
@@ -131,9 +131,9 @@ kernel void lstm_grad_forward(global const real* u, uint u0, global const real* 
 /// h and c from the next step (h_carry is null in the last step). Out: the adjoint of the pre-activation
 /// gates, in place of the direct one; c_carry for the previous step.
 kernel void lstm_grad_backward(global const real* gates, uint gates0, global const real* c, uint c0,
-                                global const real* c_before, uint c_before0, global const real* direct,
-                                uint direct0, global const real* h_carry, uint h_carry0, global real* c_carry,
-                                uint c_carry0, global real* adjoint, uint adjoint0, uint batch, uint k) {
+                               global const real* c_before, uint c_before0, global const real* direct,
+                               uint direct0, global const real* h_carry, uint h_carry0, global real* c_carry,
+                               uint c_carry0, global real* adjoint, uint adjoint0, uint batch, uint k) {
   const uint columns = (k + VW - 1) / VW, item = get_global_id(0);
   const uint b = item / columns, j = item % columns * VW;
   if (b >= batch) return;

@@ -2,7 +2,7 @@
 
 /// out[o, s, i] = scale * sum of x[o, j, i] over j in [s*chunk, (s+1)*chunk), in ascending order.
 kernel void sum_axis(global const real* x, uint x0, global real* out, uint out0, uint outer, uint count,
-                       uint inner, uint chunk, real scale) {
+                     uint inner, uint chunk, real scale) {
   const uint columns = (inner + VW - 1) / VW, pieces = (count + chunk - 1) / chunk, item = get_global_id(0);
   const uint row = item / columns, i = item % columns * VW;
   if (row >= outer * pieces) return;
@@ -30,7 +30,7 @@ kernel void sum_rows(global const real* x, uint x0, global real* out, uint out0,
 
 /// out[o, j, i] = scale * x[o, i] for j < count.
 kernel void broadcast_axis(global const real* x, uint x0, global real* out, uint out0, uint outer, uint count,
-                   uint inner, real scale) {
+                           uint inner, real scale) {
   const uint columns = (inner + VW - 1) / VW, item = get_global_id(0);
   const uint row = item / columns, i = item % columns * VW;
   if (row >= outer * count) return;
@@ -40,7 +40,7 @@ kernel void broadcast_axis(global const real* x, uint x0, global real* out, uint
 
 /// out[r, j] = scale * x[r] for j < count: broadcast_axis with inner = 1.
 kernel void broadcast_rows(global const real* x, uint x0, global real* out, uint out0, uint rows, uint count,
-                        real scale) {
+                           real scale) {
   const uint columns = (count + VW - 1) / VW, item = get_global_id(0);
   const uint r = item / columns, j = item % columns * VW;
   if (r < rows) store_some((realv)(scale * x[x0 + r]), out + out0 + r * count + j, count - j);

@@ -14,8 +14,7 @@ int main() {
 
   // Each continues a second of a clip; sample 7 has the same noise whichever characters are around it.
   std::vector<ActionPrior> priors;
-  for (const motion::ActionClip& clip : data.train)
-    priors.push_back(data.prior(clip));
+  for (const motion::ActionClip& clip : data.train) priors.push_back(data.prior(clip));
   ActionStream stream(model);
   std::vector<ActionStream::Id> ids;
   for (std::uint32_t i = 0; i < 20; ++i) {

@@ -30,7 +30,7 @@ int main() {
   for (const auto& m : motions) motion::write_bvh("collection/" + m.id + ".bvh", m.motion);
   const SearchCollection collection = open_search_collection("collection", model.format());
   const auto hypotheses = model.generate_poses("walk", {.count = 16});
-  for (const SearchHit& hit : search(ctx, collection.index, hypotheses, {.top = 3}).hits)
+  for (const SearchHit& hit : rank_clips(ctx, collection.index, hypotheses, {.top = 3}).hits)
     std::printf("%s at frame %zu, distance %.2f\n", collection.index.clips()[hit.window.clip].path.c_str(),
                 hit.window.frame, hit.distance());
 }

@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <fstream>
 
+#include "inspect/plot_log.hpp"
 #include "motiongan/formats/bvh.hpp"
+#include "motiongan/metrics/statistics.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/procedural/procedural.hpp"
-#include "motiongan/metrics/statistics.hpp"
 #include "motiongan/train/progress.hpp"
-#include "inspect/plot_log.hpp"
 #include "shared/show.hpp"
 #include "shared/signals.hpp"
 #include "train/training.hpp"
@@ -174,7 +174,8 @@ int run_demo(const DemoArgs& demo) {
   DvganArgs args = demo_options();
   const motion::Dataset data = load_data(args);
   print_data(data, args);
-  fmt::print("\n2. training for {} (Ctrl-C stops early and continues with step 3)\n", duration(60 * demo.minutes));
+  fmt::print("\n2. training for {} (Ctrl-C stops early and continues with step 3)\n",
+             duration(60 * demo.minutes));
   Dvgan model(context, data.format, args.model);
   print_model(model);
   const RunResult result = train_for(demo.minutes, model, data, args, out / "save");
@@ -198,19 +199,20 @@ int run_demo(const DemoArgs& demo) {
   return 0;
 }
 
-const Verb demo_verb{"demo", [](CLI::App& app, Job& job) {
-  CLI::App* verb = app.add_subcommand(
-      "demo",
-      "Train a small model on built-in motion and show the result: BVH files, an HTML page, pictures");
-  const auto args = std::make_shared<DemoArgs>();
-  verb->add_option("--minutes", args->minutes, "training time in minutes")
-      ->capture_default_str()
-      ->check(CLI::Range(0.001, 1e5));
-  verb->add_option("--out", args->out, "folder to write to; emptied first if an earlier demo made it")
-      ->capture_default_str()
-      ->type_name("DIR");
-  verb->callback([&job, args] { job = [args] { return run_demo(*args); }; });
-}};
+const Verb demo_verb{
+    "demo", [](CLI::App& app, Job& job) {
+      CLI::App* verb = app.add_subcommand(
+          "demo",
+          "Train a small model on built-in motion and show the result: BVH files, an HTML page, pictures");
+      const auto args = std::make_shared<DemoArgs>();
+      verb->add_option("--minutes", args->minutes, "training time in minutes")
+          ->capture_default_str()
+          ->check(CLI::Range(0.001, 1e5));
+      verb->add_option("--out", args->out, "folder to write to; emptied first if an earlier demo made it")
+          ->capture_default_str()
+          ->type_name("DIR");
+      verb->callback([&job, args] { job = [args] { return run_demo(*args); }; });
+    }};
 
 }  // namespace
 

@@ -44,9 +44,10 @@ int run(int argc, char** argv) {
       ->type_name("DEVICE");
   Job job;
   std::map<std::string, CLI::App*> groups;
-  for (const auto& [name, description] : {std::pair{"train", "Train a model on motion clips with captions or classes"},
-                                          {"ablate", "Train a model with and without each of its parts, and compare"},
-                                          {"evaluate", "Evaluate models and motion with the papers' metrics and others"}}) {
+  for (const auto& [name, description] :
+       {std::pair{"train", "Train a model on motion clips with captions or classes"},
+        {"ablate", "Train a model with and without each of its parts, and compare"},
+        {"evaluate", "Evaluate models and motion with the papers' metrics and others"}}) {
     groups[name] = app.add_subcommand(name, description);
     groups[name]->require_subcommand(1);
   }

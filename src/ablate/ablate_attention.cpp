@@ -96,39 +96,46 @@ void add_training_options(CLI::App& verb, AblationTraining& a) {
   for (const char* name : {"--skeleton-weight", "--blend-weight"}) verb.get_option(name)->check(positive());
 }
 
-const Verb ablate_attention_verb{"ablate attention", [](CLI::App& ablate, Job& job) {
-  CLI::App* verb = ablate.add_subcommand(
-      "attention",
-      "Train the attention WGAN-GP, its variants without attention, blend loss or skeleton loss, and the\n"
-      "LSTM baseline, all with the same budget, and measure them on test clips: table.csv, angles.csv,\n"
-      "angles.png and strips of poses in --save. Every variant has its own folder there. Ctrl-C saves and\n"
-      "stops; the same command continues, and trains nothing twice.");
-  const auto args = std::make_shared<AblateArgs>();
-  AblateArgs& a = *args;
-  a.training.budget.minutes = 20;
-  add_action_data_options(*verb, a.data, true);
-  verb->add_option("--save", a.save, "folder of the comparison")->required()->type_name("DIR");
-  std::string names;
-  for (const AblationVariant& v : ablation_variants()) names += concat(names.empty() ? "" : ", ", v.name);
-  verb->add_option("--variants", a.variants, "variants to train and measure [all]: " + names)->delimiter(',')->type_name("A,B");
-  verb->add_flag("--evaluate-only", a.evaluate_only, "train nothing; measure the existing models");
-  add_training_options(*verb, a.training);
-  const auto option = [&](const char* name, auto& member, const char* text) {
-    return verb->add_option(name, member, text)->capture_default_str()->group("Evaluation");
-  };
-  option("--windows", a.evaluation.windows, "at most this many priors, cycling through the classes")->check(positive());
-  option("--future", a.evaluation.frames, "frames after each prior that are compared; the paper: 70")
-      ->check(positive());
-  option("--window-seed", a.evaluation.seed, "seed that selects the windows")->check(not_negative());
-  verb->add_option("--unit-metres", a.unit_metres,
-                   "metres per unit of the clips, to print lengths in metres (CMU 0.05644, Bandai-Namco 0.01)")
-      ->check(positive())
-      ->group("Evaluation");
-  verb->callback([&job, args, verb] {
-    fill_in_procedural(*verb, args->data.procedural);
-    job = [args, verb] { return run_ablation(*args, *verb); };
-  });
-}};
+const Verb ablate_attention_verb{
+    "ablate attention", [](CLI::App& ablate, Job& job) {
+      CLI::App* verb = ablate.add_subcommand(
+          "attention",
+          "Train the attention WGAN-GP, its variants without attention, blend loss or skeleton loss, and "
+          "the\n"
+          "LSTM baseline, all with the same budget, and measure them on test clips: table.csv, angles.csv,\n"
+          "angles.png and strips of poses in --save. Every variant has its own folder there. Ctrl-C saves "
+          "and\n"
+          "stops; the same command continues, and trains nothing twice.");
+      const auto args = std::make_shared<AblateArgs>();
+      AblateArgs& a = *args;
+      a.training.budget.minutes = 20;
+      add_action_data_options(*verb, a.data, true);
+      verb->add_option("--save", a.save, "folder of the comparison")->required()->type_name("DIR");
+      std::string names;
+      for (const AblationVariant& v : ablation_variants()) names += concat(names.empty() ? "" : ", ", v.name);
+      verb->add_option("--variants", a.variants, "variants to train and measure [all]: " + names)
+          ->delimiter(',')
+          ->type_name("A,B");
+      verb->add_flag("--evaluate-only", a.evaluate_only, "train nothing; measure the existing models");
+      add_training_options(*verb, a.training);
+      const auto option = [&](const char* name, auto& member, const char* text) {
+        return verb->add_option(name, member, text)->capture_default_str()->group("Evaluation");
+      };
+      option("--windows", a.evaluation.windows, "at most this many priors, cycling through the classes")
+          ->check(positive());
+      option("--future", a.evaluation.frames, "frames after each prior that are compared; the paper: 70")
+          ->check(positive());
+      option("--window-seed", a.evaluation.seed, "seed that selects the windows")->check(not_negative());
+      verb->add_option(
+              "--unit-metres", a.unit_metres,
+              "metres per unit of the clips, to print lengths in metres (CMU 0.05644, Bandai-Namco 0.01)")
+          ->check(positive())
+          ->group("Evaluation");
+      verb->callback([&job, args, verb] {
+        fill_in_procedural(*verb, args->data.procedural);
+        job = [args, verb] { return run_ablation(*args, *verb); };
+      });
+    }};
 
 }  // namespace
 

@@ -1,9 +1,9 @@
 // Shared by the parts of `motiongan ablate attention`.
 #pragma once
-#include "shared/command.hpp"
 #include "motiongan/experiments/action_ablation.hpp"
 #include "motiongan/train/attention_trainer.hpp"
 #include "motiongan/train/baseline_trainer.hpp"
+#include "shared/command.hpp"
 #include "train/training_budget.hpp"
 
 namespace motiongan::command {

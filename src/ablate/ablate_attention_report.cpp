@@ -131,9 +131,8 @@ void print_windows(const ActionEvaluation& evaluation) {
                         counted(w.clips_per_class[c], "clip"));
     if (w.per_class[c] == 0) none += (none.empty() ? "" : ", ") + classes[c];
   }
-  fmt::print(
-      "\nmeasured on test clips: {}\n{} of {} have the {} frames that a prior and its future need\n",
-      each, w.long_clips, counted(w.clips, "test clip"), length);
+  fmt::print("\nmeasured on test clips: {}\n{} of {} have the {} frames that a prior and its future need\n",
+             each, w.long_clips, counted(w.clips, "test clip"), length);
   if (!none.empty()) fmt::print("no test clip of {} is that long: not measured\n", none);
 }
 

@@ -20,9 +20,10 @@ bool train_variants(const Context& context, const motion::ActionDataset& data, c
     options.iterations = iterations_of(training.budget, options.steps());
     const auto write_split = [&](const fs::path& path) { data.write_split(path); };
     const bool ended = unless_diverged(name, [&] {
-      const auto trainer = variant->lstm ? std::unique_ptr<Trainer>(new BaselineTrainer(
-                                               model, data, AblationVariant::baseline_training(options)))
-                                         : std::unique_ptr<Trainer>(new AttentionTrainer(model, data, options));
+      const auto trainer = variant->lstm
+                               ? std::unique_ptr<Trainer>(new BaselineTrainer(
+                                     model, data, AblationVariant::baseline_training(options)))
+                               : std::unique_ptr<Trainer>(new AttentionTrainer(model, data, options));
       return train_within(*trainer, write_split, {.save_dir = folder, .notes = notes(*variant)},
                           training.budget, name);
     });

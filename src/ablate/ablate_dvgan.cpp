@@ -2,10 +2,10 @@
 // them with a ranker.
 #include "ablate/ablate_dvgan.hpp"
 
+#include "shared/signals.hpp"
 #include "train/ranking.hpp"
 #include "train/run_start.hpp"
 #include "train/training.hpp"
-#include "shared/signals.hpp"
 #include "train/training_budget.hpp"
 
 namespace motiongan::command {
@@ -86,9 +86,9 @@ bool train_variants(const Context& context, const motion::Dataset& data, const A
       Dvgan model(context, data.format, args.model);
       const bool ended = unless_diverged(name, [&] {
         DvganTrainer trainer(model, data, args.training);
-        return train_within(trainer, [&](const fs::path& path) { data.write_split(path); },
-                            {.save_dir = folder, .notes = {{"options", note_of(fields_of(args))}}}, all.budget,
-                            name);
+        return train_within(
+            trainer, [&](const fs::path& path) { data.write_split(path); },
+            {.save_dir = folder, .notes = {{"options", note_of(fields_of(args))}}}, all.budget, name);
       });
       if (!ended) return false;
     }
@@ -114,9 +114,9 @@ std::optional<Ranker> get_ranker(const Context& context, const motion::Dataset& 
   make_folder(folder);
   std::optional<Ranker> ranker(std::in_place, context, data.format, ranking.model);
   RankerTrainer trainer(*ranker, data, ranking.training);
-  if (!train_within(trainer, [&](const fs::path& path) { data.write_split(path); },
-                    {.save_dir = folder, .notes = {{"options", note_of(fields_of(ranking))}}}, budget,
-                    "ranker"))
+  if (!train_within(
+          trainer, [&](const fs::path& path) { data.write_split(path); },
+          {.save_dir = folder, .notes = {{"options", note_of(fields_of(ranking))}}}, budget, "ranker"))
     return std::nullopt;
   return Ranker::load(context, ranker_file(folder));
 }
@@ -151,62 +151,68 @@ int run_ablation(AblateDvganArgs args, const CLI::App& verb) {
   return 0;
 }
 
-const Verb ablate_dvgan_verb{"ablate dvgan", [](CLI::App& ablate, Job& job) {
-  CLI::App* verb = ablate.add_subcommand(
-      "dvgan",
-      "Train generators and critics with and without dense validation, input shift and final cut, all with "
-      "the\nsame budget and several seeds, and measure them with a ranker: Lin & Amer, Tables 2 and S1, on "
-      "your clips.\nEvery run has its own folder in --save, VARIANT/seed-N. Ctrl-C saves and stops; the same "
-      "command continues,\nand trains nothing twice.");
-  const auto args = std::make_shared<AblateDvganArgs>();
-  AblateDvganArgs& a = *args;
-  a.variants = {"paper"};
-  a.ranking.model.hidden = 256;
-  a.ranking.training.iterations = 600;
-  add_captioned_data_options(*verb, a);
-  verb->add_option("--save", a.save, "folder of the comparison")->required()->type_name("DIR");
-  verb->add_option("--variants", a.variants,
-                   "paper: the ten rows of Tables 2 and S1; all: the 32 combinations; or names such as "
-                   "cnn-cnn-dense-shift-cut, rnn-rnn")
-      ->delimiter(',')
-      ->capture_default_str()
-      ->type_name("A,B");
-  verb->add_option("--seeds", a.seeds, "number of seeds for each variant")->check(positive())->capture_default_str();
-  verb->add_option("--seed", a.training.seed, "first seed")
-      ->check(not_negative())
-      ->capture_default_str();
-  verb->add_flag("--evaluate-only", a.evaluate_only, "train nothing; measure the existing models");
-  add_budget_options(*verb, a.budget, "for each run", "Training");
-  add_options(*verb, fields_of(a.model), "Model", {.only = {"hidden", "taps"}});
-  add_options(*verb, fields_of(a.training), "Training",
-              {.without = {"iterations", "seed", "critic", "validation", "input_shift", "completion_share"}});
-  const auto option = [&](const char* name, auto& member, const char* text) {
-    return verb->add_option(name, member, text)->capture_default_str()->group("Evaluation");
-  };
-  verb->add_option("--ranker", a.ranker, "folder of a `train ranker` run [one is trained in --save]")
-      ->type_name("DIR")
-      ->group("Evaluation");
-  verb->add_option_function<std::string>(
-          "--ranker-kind",
-          [&a](const std::string& name) {
-            a.ranking.model.kind = enum_from<RankerKind>(name, "--ranker-kind");
-          },
-          "kind of the ranker that is trained")
-      ->check(CLI::IsMember({"cnn", "rnn"}))
-      ->default_str(name_of(a.ranking.model.kind))
-      ->group("Evaluation");
-  option("--ranker-hidden", a.ranking.model.hidden, "width of that ranker")->check(positive());
-  option("--ranker-iterations", a.ranking.training.iterations, "training iterations of that ranker")->check(positive());
-  option("--descriptions", a.evaluation.descriptions, "K: at most this many, the most frequent ones of the test clips")
-      ->check(positive());
-  option("--samples", a.evaluation.samples, "motions of each description, generated and real")
-      ->check(CLI::Range(std::size_t{2}, std::size_t{1'000'000}));
-  option("--evaluation-seed", a.evaluation.seed, "seed of the generated motions")->check(not_negative());
-  verb->callback([&job, args, verb] {
-    fill_in_procedural(*verb, args->procedural);
-    job = [args, verb] { return run_ablation(*args, *verb); };
-  });
-}};
+const Verb ablate_dvgan_verb{
+    "ablate dvgan", [](CLI::App& ablate, Job& job) {
+      CLI::App* verb = ablate.add_subcommand("dvgan",
+                                             "Train generators and critics with and without dense "
+                                             "validation, input shift and final cut, all with "
+                                             "the\nsame budget and several seeds, and measure them with a "
+                                             "ranker: Lin & Amer, Tables 2 and S1, on "
+                                             "your clips.\nEvery run has its own folder in --save, "
+                                             "VARIANT/seed-N. Ctrl-C saves and stops; the same "
+                                             "command continues,\nand trains nothing twice.");
+      const auto args = std::make_shared<AblateDvganArgs>();
+      AblateDvganArgs& a = *args;
+      a.variants = {"paper"};
+      a.ranking.model.hidden = 256;
+      a.ranking.training.iterations = 600;
+      add_captioned_data_options(*verb, a);
+      verb->add_option("--save", a.save, "folder of the comparison")->required()->type_name("DIR");
+      verb->add_option("--variants", a.variants,
+                       "paper: the ten rows of Tables 2 and S1; all: the 32 combinations; or names such as "
+                       "cnn-cnn-dense-shift-cut, rnn-rnn")
+          ->delimiter(',')
+          ->capture_default_str()
+          ->type_name("A,B");
+      verb->add_option("--seeds", a.seeds, "number of seeds for each variant")
+          ->check(positive())
+          ->capture_default_str();
+      verb->add_option("--seed", a.training.seed, "first seed")->check(not_negative())->capture_default_str();
+      verb->add_flag("--evaluate-only", a.evaluate_only, "train nothing; measure the existing models");
+      add_budget_options(*verb, a.budget, "for each run", "Training");
+      add_options(*verb, fields_of(a.model), "Model", {.only = {"hidden", "taps"}});
+      add_options(
+          *verb, fields_of(a.training), "Training",
+          {.without = {"iterations", "seed", "critic", "validation", "input_shift", "completion_share"}});
+      const auto option = [&](const char* name, auto& member, const char* text) {
+        return verb->add_option(name, member, text)->capture_default_str()->group("Evaluation");
+      };
+      verb->add_option("--ranker", a.ranker, "folder of a `train ranker` run [one is trained in --save]")
+          ->type_name("DIR")
+          ->group("Evaluation");
+      verb->add_option_function<std::string>(
+              "--ranker-kind",
+              [&a](const std::string& name) {
+                a.ranking.model.kind = enum_from<RankerKind>(name, "--ranker-kind");
+              },
+              "kind of the ranker that is trained")
+          ->check(CLI::IsMember({"cnn", "rnn"}))
+          ->default_str(name_of(a.ranking.model.kind))
+          ->group("Evaluation");
+      option("--ranker-hidden", a.ranking.model.hidden, "width of that ranker")->check(positive());
+      option("--ranker-iterations", a.ranking.training.iterations, "training iterations of that ranker")
+          ->check(positive());
+      option("--descriptions", a.evaluation.descriptions,
+             "K: at most this many, the most frequent ones of the test clips")
+          ->check(positive());
+      option("--samples", a.evaluation.samples, "motions of each description, generated and real")
+          ->check(CLI::Range(std::size_t{2}, std::size_t{1'000'000}));
+      option("--evaluation-seed", a.evaluation.seed, "seed of the generated motions")->check(not_negative());
+      verb->callback([&job, args, verb] {
+        fill_in_procedural(*verb, args->procedural);
+        job = [args, verb] { return run_ablation(*args, *verb); };
+      });
+    }};
 
 }  // namespace
 

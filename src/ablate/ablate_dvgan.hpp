@@ -1,7 +1,7 @@
 // Shared by the parts of `motiongan ablate dvgan`.
 #pragma once
-#include "shared/command.hpp"
 #include "motiongan/experiments/dvgan_ablation.hpp"
+#include "shared/command.hpp"
 
 namespace motiongan::command {
 

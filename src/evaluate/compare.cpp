@@ -1,11 +1,11 @@
 // motiongan compare: statistics of generated clips next to those of real ones.
-#include "shared/command.hpp"
-#include "motiongan/formats/bvh.hpp"
 #include "motiongan/data/clip_source.hpp"
 #include "motiongan/data/first_frame.hpp"
-#include "motiongan/motion/motion.hpp"
-#include "motiongan/metrics/statistics.hpp"
+#include "motiongan/formats/bvh.hpp"
 #include "motiongan/formats/text_file.hpp"
+#include "motiongan/metrics/statistics.hpp"
+#include "motiongan/motion/motion.hpp"
+#include "shared/command.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -22,7 +22,7 @@ std::vector<motion::Motion> load(const std::vector<std::string>& where, double r
   std::vector<motion::Motion> out;
   std::size_t short_ones = 0;
   for (const std::string& given : where)
-    for (const fs::path& file : motion::find_bvh_files(given)) {
+    for (const fs::path& file : motion::find_clip_files(given)) {
       motion::Clip clip = motion::read_bvh(file);
       motion::drop_first_frames(clip, motion::FirstFrame::automatic);
       motion::Motion motion = motion::to_motion(clip);
@@ -47,8 +47,8 @@ int compare_sets(const CompareArgs& args) {
           " per second; nothing to compare with");
   const motion::StatisticsComparison result =
       motion::compare(motion::measure(generated), motion::measure(real), args.margin);
-  fmt::print("at {} frames per second; ratios are generated / real\n\n{}",
-             brief(rate), motion::to_table(result));
+  fmt::print("at {} frames per second; ratios are generated / real\n\n{}", brief(rate),
+             motion::to_table(result));
   if (!args.csv.empty()) {
     make_folder_of(args.csv);
     motion::write_text_atomically(args.csv, motion::to_csv(result));
@@ -57,24 +57,25 @@ int compare_sets(const CompareArgs& args) {
   return 0;
 }
 
-const Verb compare_verb{"compare", [](CLI::App& app, Job& job) {
-  CLI::App* verb = app.add_subcommand(
-      "compare",
-      "Compare statistics of generated and real clips: spread, speed and range of each joint");
-  const auto args = std::make_shared<CompareArgs>();
-  verb->add_option("--generated", args->generated, "BVH files, or folders of them")
-      ->required()
-      ->type_name("FILES");
-  verb->add_option("--real", args->real, "BVH files, or folders of them")->required()->type_name("FILES");
-  verb->add_option("--rate", args->rate, "frames per second to compare at [the generated clips']")
-      ->check(CLI::Range(1e-3, 1e4))
-      ->type_name("HZ");
-  verb->add_option("--margin", args->margin, "widen the real range by this fraction of it at either end")
-      ->check(not_negative())
-      ->capture_default_str();
-  verb->add_option("--csv", args->csv, "also write the table as CSV, a line for each joint")->type_name("FILE");
-  verb->callback([&job, args] { job = [args] { return compare_sets(*args); }; });
-}};
+const Verb compare_verb{
+    "compare", [](CLI::App& app, Job& job) {
+      CLI::App* verb = app.add_subcommand(
+          "compare", "Compare statistics of generated and real clips: spread, speed and range of each joint");
+      const auto args = std::make_shared<CompareArgs>();
+      verb->add_option("--generated", args->generated, "BVH files, or folders of them")
+          ->required()
+          ->type_name("FILES");
+      verb->add_option("--real", args->real, "BVH files, or folders of them")->required()->type_name("FILES");
+      verb->add_option("--rate", args->rate, "frames per second to compare at [the generated clips']")
+          ->check(CLI::Range(1e-3, 1e4))
+          ->type_name("HZ");
+      verb->add_option("--margin", args->margin, "widen the real range by this fraction of it at either end")
+          ->check(not_negative())
+          ->capture_default_str();
+      verb->add_option("--csv", args->csv, "also write the table as CSV, a line for each joint")
+          ->type_name("FILE");
+      verb->callback([&job, args] { job = [args] { return compare_sets(*args); }; });
+    }};
 
 }  // namespace
 

@@ -46,8 +46,8 @@ int evaluate_completion(CompletionArgs args, const CLI::App& verb) {
   const CompletionData data(motion::read_expmap_collection(args.folder, selection));
   std::size_t frames = 0;
   for (const CompletionClip& clip : data.train()) frames += clip.frames;
-  print_fact("layout", fmt::format("{}: {} columns, {} of which vary", name_of(data.layout()),
-                                   data.columns(), data.dof()));
+  print_fact("layout", fmt::format("{}: {} columns, {} of which vary", name_of(data.layout()), data.columns(),
+                                   data.dof()));
   print_fact("training", fmt::format("{}, {} frames at {} per second", counted(data.train().size(), "file"),
                                      frames, brief(data.rate())));
   print_fact("tests", fmt::format("{} for each of {}: {}", CompletionProtocol::tests,
@@ -67,7 +67,8 @@ void add_model_options(CLI::App& verb, CompletionArgs& a) {
   const auto option = [&](const char* name, auto& member, const char* text) {
     return verb.add_option(name, member, text)->capture_default_str()->group(group);
   };
-  option("--iterations", a.predictors.iterations, "training iterations of each model but dvgan")->check(positive());
+  option("--iterations", a.predictors.iterations, "training iterations of each model but dvgan")
+      ->check(positive());
   option("--dvgan-iterations", a.dvgan.iterations, "training iterations of dvgan")->check(positive());
   option("--minutes", a.minutes,
          "training time of each model; the whole budget if no iterations are given; 0: no limit")
@@ -84,38 +85,43 @@ void add_model_options(CLI::App& verb, CompletionArgs& a) {
   add_options(verb, dvgan, "dvgan");
 }
 
-const Verb evaluate_completion_verb{"evaluate completion", [](CLI::App& evaluate, Job& job) {
-  CLI::App* verb = evaluate.add_subcommand(
-      "completion",
-      "Measure the completion error against the ground truth, as in the motion-prediction papers: train\n"
-      "the baselines and dvgan on text files of exponential maps, each in a folder of --save, then print\n"
-      "and write the tables. Ctrl-C saves and stops; the same command continues, and trains nothing twice.");
-  const auto args = std::make_shared<CompletionArgs>();
-  CompletionArgs& a = *args;
-  verb->add_option("FOLDER", a.folder, "folder with S1, S5, ... (Human3.6M) or train and test (CMU)")
-      ->required()
-      ->type_name("");
-  verb->add_option("--layout", a.layout, "h36m or cmu; auto: by the folder names")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"auto", "h36m", "cmu"}));
-  verb->add_option("--actions", a.actions, "actions to test [all that have test files]")
-      ->delimiter(',')
-      ->type_name("A,B");
-  verb->add_option("--train-actions", a.train_actions, "actions to train on [all that have training files]")
-      ->delimiter(',')
-      ->type_name("A,B");
-  verb->add_option("--models", a.models, "rows of the tables")
-      ->delimiter(',')
-      ->type_name("A,B")
-      ->default_str(listed(known_models()));
-  verb->add_option("--save", a.save, "folder of the trained models and of the tables")->type_name("DIR");
-  verb->add_flag("--evaluate-only", a.evaluate_only, "train nothing; evaluate the existing models");
-  verb->add_option("--samples", a.samples, "completions that dvgan generates for each test")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 65535));
-  add_model_options(*verb, a);
-  verb->callback([&job, args, verb] { job = [args, verb] { return evaluate_completion(*args, *verb); }; });
-}};
+const Verb evaluate_completion_verb{
+    "evaluate completion", [](CLI::App& evaluate, Job& job) {
+      CLI::App* verb = evaluate.add_subcommand(
+          "completion",
+          "Measure the completion error against the ground truth, as in the motion-prediction papers: train\n"
+          "the baselines and dvgan on text files of exponential maps, each in a folder of --save, then "
+          "print\n"
+          "and write the tables. Ctrl-C saves and stops; the same command continues, and trains nothing "
+          "twice.");
+      const auto args = std::make_shared<CompletionArgs>();
+      CompletionArgs& a = *args;
+      verb->add_option("FOLDER", a.folder, "folder with S1, S5, ... (Human3.6M) or train and test (CMU)")
+          ->required()
+          ->type_name("");
+      verb->add_option("--layout", a.layout, "h36m or cmu; auto: by the folder names")
+          ->capture_default_str()
+          ->check(CLI::IsMember({"auto", "h36m", "cmu"}));
+      verb->add_option("--actions", a.actions, "actions to test [all that have test files]")
+          ->delimiter(',')
+          ->type_name("A,B");
+      verb->add_option("--train-actions", a.train_actions,
+                       "actions to train on [all that have training files]")
+          ->delimiter(',')
+          ->type_name("A,B");
+      verb->add_option("--models", a.models, "rows of the tables")
+          ->delimiter(',')
+          ->type_name("A,B")
+          ->default_str(listed(known_models()));
+      verb->add_option("--save", a.save, "folder of the trained models and of the tables")->type_name("DIR");
+      verb->add_flag("--evaluate-only", a.evaluate_only, "train nothing; evaluate the existing models");
+      verb->add_option("--samples", a.samples, "completions that dvgan generates for each test")
+          ->capture_default_str()
+          ->check(CLI::Range(1, 65535));
+      add_model_options(*verb, a);
+      verb->callback(
+          [&job, args, verb] { job = [args, verb] { return evaluate_completion(*args, *verb); }; });
+    }};
 
 }  // namespace
 

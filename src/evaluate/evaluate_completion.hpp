@@ -1,9 +1,9 @@
 // Shared by the parts of `motiongan evaluate completion`.
 #pragma once
-#include "shared/command.hpp"
 #include "motiongan/experiments/completion_models.hpp"
 #include "motiongan/experiments/completion_table.hpp"
 #include "motiongan/networks/dvgan_critic.hpp"
+#include "shared/command.hpp"
 #include "train/training_budget.hpp"
 
 namespace motiongan::command {
@@ -45,9 +45,10 @@ struct CompletionArgs {
     list.add(critic, {.key = "critic", .help = "cnn or rnn"});
     list.add(critic_steps,
              {.key = "critic_steps", .help = "critic steps in each iteration", .range = Range::at_least(1)});
-    list.add(completion_share, {.key = "completion_share",
-                                .help = "fraction of the steps whose fakes continue real frames; the paper: 0",
-                                .range = Range::between(0, 1)});
+    list.add(completion_share,
+             {.key = "completion_share",
+              .help = "fraction of the steps whose fakes continue real frames; the paper: 0",
+              .range = Range::between(0, 1)});
   }
   FieldList kept_fields(bool of_dvgan) {
     FieldList list;

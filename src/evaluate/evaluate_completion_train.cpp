@@ -2,8 +2,8 @@
 #include "evaluate/evaluate_completion.hpp"
 #include "motiongan/train/dvgan_trainer.hpp"
 #include "motiongan/train/prediction_trainer.hpp"
-#include "train/run_start.hpp"
 #include "shared/signals.hpp"
+#include "train/run_start.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -51,8 +51,8 @@ bool train_dvgan(const Context& context, const CompletionData& data, const Compl
   if (!windows.skipped.empty()) {
     std::vector<std::string> ids;
     for (const motion::SkippedClip& clip : windows.skipped) ids.push_back(clip.id);
-    fmt::print("dvgan: left out {} too short for a window of {} frames: {}\n",
-               counted(ids.size(), "file"), args.dvgan_frames, listed(ids));
+    fmt::print("dvgan: left out {} too short for a window of {} frames: {}\n", counted(ids.size(), "file"),
+               args.dvgan_frames, listed(ids));
   }
   DvganTrainOptions options;
   options.critic_steps = args.critic_steps;
@@ -65,8 +65,9 @@ bool train_dvgan(const Context& context, const CompletionData& data, const Compl
   Dvgan model(context, windows.format,
               {.generator = GeneratorKind::rnn, .hidden = args.dvgan_hidden, .seed = args.seed});
   DvganTrainer trainer(model, windows, options);
-  return train_within(trainer, [&](const fs::path& path) { windows.write_split(path); },
-                      {.save_dir = folder, .notes = notes_of(args, true, data)}, budget_of(args, true), "dvgan");
+  return train_within(
+      trainer, [&](const fs::path& path) { windows.write_split(path); },
+      {.save_dir = folder, .notes = notes_of(args, true, data)}, budget_of(args, true), "dvgan");
 }
 
 bool train_predictor(const Context& context, const CompletionData& data, const CompletionArgs& args,
@@ -79,14 +80,14 @@ bool train_predictor(const Context& context, const CompletionData& data, const C
   options.prefix = CompletionProtocol::prefix;
   options.future = CompletionProtocol::future;
   options.seed = args.seed;
-  PredictionModel model(context, {data.dof(), data.classes().size()},
-                        {.predictor = enum_from<Predictor>(kind, "--models"),
-                         .hidden = args.hidden,
-                         .seed = args.seed});
+  PredictionModel model(
+      context, {data.dof(), data.classes().size()},
+      {.predictor = enum_from<Predictor>(kind, "--models"), .hidden = args.hidden, .seed = args.seed});
   const PredictionData sequences = prediction_data(data);
   PredictionTrainer trainer(model, sequences, options);
-  return train_within(trainer, [&](const fs::path& path) { sequences.write_split(path); },
-                      {.save_dir = folder, .notes = notes_of(args, false, data)}, budget_of(args, false), name);
+  return train_within(
+      trainer, [&](const fs::path& path) { sequences.write_split(path); },
+      {.save_dir = folder, .notes = notes_of(args, false, data)}, budget_of(args, false), name);
 }
 
 }  // namespace

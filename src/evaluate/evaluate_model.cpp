@@ -98,39 +98,42 @@ int run_evaluation(EvaluateModelArgs args, const CLI::App& verb) {
   return 0;
 }
 
-const Verb evaluate_model_verb{"evaluate model", [](CLI::App& evaluate, Job& job) {
-  CLI::App* verb = evaluate.add_subcommand("model",
-                                           "Evaluate a text-conditioned generator on the descriptions of its "
-                                           "test clips, next to real motion: inception\n"
-                                           "score and retrieval (Lin & Amer, Table 2), FID, diversity, "
-                                           "multimodality, foot skating, jerk, bones, drift.");
-  const auto args = std::make_shared<EvaluateModelArgs>();
-  EvaluateModelArgs& a = *args;
-  const auto option = [&](const char* name, auto& member, const char* text) {
-    return verb->add_option(name, member, text)->capture_default_str();
-  };
-  verb->add_option("MODEL", a.model, "model file, or the --save folder of a training run")
-      ->required()
-      ->type_name("");
-  add_test_clip_options(*verb, a);
-  verb->add_option("--ranker", a.ranker, "folder of a `train ranker` run, or a ranker file")
-      ->required()
-      ->type_name("RANKER");
-  option("--descriptions", a.evaluation.descriptions, "K: at most this many, the most frequent ones")->check(positive());
-  option("--samples", a.evaluation.samples, "motions of each description, generated and real")
-      ->check(CLI::Range(std::size_t{2}, std::size_t{1000000}))
-      ->type_name("N");
-  option("--seed", a.evaluation.seed, "seed of the generated motions")->check(not_negative());
-  option("--drift-seconds", a.evaluation.drift_seconds,
-         "length of the motions that drift is measured on (RNN generators only); 0: no drift")
-      ->check(not_negative());
-  add_quality_options(*verb, a.evaluation.feet);
-  verb->add_option("--json", a.json, "also write all results as JSON")->type_name("FILE");
-  verb->callback([&job, args, verb] {
-    fill_in_procedural(*verb, args->procedural);
-    job = [args, verb] { return run_evaluation(*args, *verb); };
-  });
-}};
+const Verb evaluate_model_verb{
+    "evaluate model", [](CLI::App& evaluate, Job& job) {
+      CLI::App* verb =
+          evaluate.add_subcommand("model",
+                                  "Evaluate a text-conditioned generator on the descriptions of its "
+                                  "test clips, next to real motion: inception\n"
+                                  "score and retrieval (Lin & Amer, Table 2), FID, diversity, "
+                                  "multimodality, foot skating, jerk, bones, drift.");
+      const auto args = std::make_shared<EvaluateModelArgs>();
+      EvaluateModelArgs& a = *args;
+      const auto option = [&](const char* name, auto& member, const char* text) {
+        return verb->add_option(name, member, text)->capture_default_str();
+      };
+      verb->add_option("MODEL", a.model, "model file, or the --save folder of a training run")
+          ->required()
+          ->type_name("");
+      add_test_clip_options(*verb, a);
+      verb->add_option("--ranker", a.ranker, "folder of a `train ranker` run, or a ranker file")
+          ->required()
+          ->type_name("RANKER");
+      option("--descriptions", a.evaluation.descriptions, "K: at most this many, the most frequent ones")
+          ->check(positive());
+      option("--samples", a.evaluation.samples, "motions of each description, generated and real")
+          ->check(CLI::Range(std::size_t{2}, std::size_t{1000000}))
+          ->type_name("N");
+      option("--seed", a.evaluation.seed, "seed of the generated motions")->check(not_negative());
+      option("--drift-seconds", a.evaluation.drift_seconds,
+             "length of the motions that drift is measured on (RNN generators only); 0: no drift")
+          ->check(not_negative());
+      add_quality_options(*verb, a.evaluation.feet);
+      verb->add_option("--json", a.json, "also write all results as JSON")->type_name("FILE");
+      verb->callback([&job, args, verb] {
+        fill_in_procedural(*verb, args->procedural);
+        job = [args, verb] { return run_evaluation(*args, *verb); };
+      });
+    }};
 
 }  // namespace
 

@@ -45,12 +45,12 @@ void print_table2(std::string_view generator, const ModelEvaluation& made, const
 }
 
 std::string biased_note(const FrechetDistance& d) {
-  return d.biased()
-             ? fmt::format(
-                   "FID is computed from {} and {} motions, too few for {} dimensions: it is biased, so compare "
-                   "it only with values from as many motions\n",
-                   d.samples1, d.samples2, d.dimensions)
-             : std::string();
+  return d.biased() ? fmt::format(
+                          "FID is computed from {} and {} motions, too few for {} dimensions: it is biased, "
+                          "so compare "
+                          "it only with values from as many motions\n",
+                          d.samples1, d.samples2, d.dimensions)
+                    : std::string();
 }
 
 void print_drift(const DriftSummary& d) {

@@ -3,13 +3,13 @@
 
 #include <map>
 
-#include "motiongan/metrics/npss.hpp"
-#include "motiongan/formats/bvh.hpp"
 #include "motiongan/data/clip_source.hpp"
 #include "motiongan/data/first_frame.hpp"
+#include "motiongan/formats/bvh.hpp"
+#include "motiongan/formats/text_file.hpp"
+#include "motiongan/metrics/npss.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/motion/skeleton_match.hpp"
-#include "motiongan/formats/text_file.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -26,7 +26,7 @@ using NamedMotions = std::map<std::string, motion::Motion>;
 /// Loads the clips of a folder or a file at one rate, without T-poses; clips of fewer than four frames are
 /// left out.
 NamedMotions load(const fs::path& where, double rate) {
-  const std::vector<fs::path> files = motion::find_bvh_files(where);
+  const std::vector<fs::path> files = motion::find_clip_files(where);
   const std::vector<std::string> ids = motion::clip_ids(files, where);
   NamedMotions out;
   std::size_t short_ones = 0;
@@ -121,23 +121,25 @@ int evaluate_motion(const EvaluateMotionArgs& args) {
   return 0;
 }
 
-const Verb evaluate_motion_verb{"evaluate motion", [](CLI::App& evaluate, Job& job) {
-  CLI::App* verb = evaluate.add_subcommand("motion",
-                                           "Compare generated with real clips without any model: foot "
-                                           "skating, jerk, bone-length error; and NPSS\n"
-                                           "over files of equal names, taken as prediction and ground truth.");
-  const auto args = std::make_shared<EvaluateMotionArgs>();
-  verb->add_option("--generated", args->generated, "BVH file, or folder of them")
-      ->required()
-      ->type_name("DIR");
-  verb->add_option("--real", args->real, "BVH file, or folder of them")->required()->type_name("DIR");
-  verb->add_option("--rate", args->rate, "frames per second to measure at [the generated clips']")
-      ->check(CLI::Range(1e-3, 1e4))
-      ->type_name("HZ");
-  add_quality_options(*verb, args->feet);
-  verb->add_option("--json", args->json, "also write all results as JSON")->type_name("FILE");
-  verb->callback([&job, args] { job = [args] { return evaluate_motion(*args); }; });
-}};
+const Verb evaluate_motion_verb{
+    "evaluate motion", [](CLI::App& evaluate, Job& job) {
+      CLI::App* verb =
+          evaluate.add_subcommand("motion",
+                                  "Compare generated with real clips without any model: foot "
+                                  "skating, jerk, bone-length error; and NPSS\n"
+                                  "over files of equal names, taken as prediction and ground truth.");
+      const auto args = std::make_shared<EvaluateMotionArgs>();
+      verb->add_option("--generated", args->generated, "BVH file, or folder of them")
+          ->required()
+          ->type_name("DIR");
+      verb->add_option("--real", args->real, "BVH file, or folder of them")->required()->type_name("DIR");
+      verb->add_option("--rate", args->rate, "frames per second to measure at [the generated clips']")
+          ->check(CLI::Range(1e-3, 1e4))
+          ->type_name("HZ");
+      add_quality_options(*verb, args->feet);
+      verb->add_option("--json", args->json, "also write all results as JSON")->type_name("FILE");
+      verb->callback([&job, args] { job = [args] { return evaluate_motion(*args); }; });
+    }};
 
 }  // namespace
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "shared/command.hpp"
 #include "motiongan/metrics/motion_quality.hpp"
+#include "shared/command.hpp"
 
 namespace motiongan::command {
 

@@ -124,30 +124,33 @@ int run_evaluation(EvaluateRankerArgs args, const CLI::App& verb) {
   return 0;
 }
 
-const Verb evaluate_ranker_verb{"evaluate ranker", [](CLI::App& evaluate, Job& job) {
-  CLI::App* verb = evaluate.add_subcommand(
-      "ranker",
-      "Measure how often a ranker finds the description of a held-out clip among K distinct ones\n"
-      "(Lin & Amer, Table 1). Clips with equal descriptions count as correct for each other.");
-  const auto args = std::make_shared<EvaluateRankerArgs>();
-  EvaluateRankerArgs& a = *args;
-  const auto option = [&](const char* name, auto& member, const char* text) {
-    return verb->add_option(name, member, text)->capture_default_str();
-  };
-  verb->add_option("RANKER", a.ranker, "folder of a `train ranker` run, or a ranker file")
-      ->required()
-      ->type_name("");
-  add_test_clip_options(*verb, a);
-  option("--descriptions", a.evaluation.descriptions, "K: at most this many, the most frequent ones")->check(positive());
-  option("--windows", a.evaluation.windows_per_clip, "windows of each clip, evenly spaced")->check(positive());
-  option("--breakdown", a.breakdown, "number of descriptions to list separately, the most frequent first")
-      ->check(not_negative());
-  verb->add_option("--json", a.json, "also write all results as JSON")->type_name("FILE");
-  verb->callback([&job, args, verb] {
-    fill_in_procedural(*verb, args->procedural);
-    job = [args, verb] { return run_evaluation(*args, *verb); };
-  });
-}};
+const Verb evaluate_ranker_verb{
+    "evaluate ranker", [](CLI::App& evaluate, Job& job) {
+      CLI::App* verb = evaluate.add_subcommand(
+          "ranker",
+          "Measure how often a ranker finds the description of a held-out clip among K distinct ones\n"
+          "(Lin & Amer, Table 1). Clips with equal descriptions count as correct for each other.");
+      const auto args = std::make_shared<EvaluateRankerArgs>();
+      EvaluateRankerArgs& a = *args;
+      const auto option = [&](const char* name, auto& member, const char* text) {
+        return verb->add_option(name, member, text)->capture_default_str();
+      };
+      verb->add_option("RANKER", a.ranker, "folder of a `train ranker` run, or a ranker file")
+          ->required()
+          ->type_name("");
+      add_test_clip_options(*verb, a);
+      option("--descriptions", a.evaluation.descriptions, "K: at most this many, the most frequent ones")
+          ->check(positive());
+      option("--windows", a.evaluation.windows_per_clip, "windows of each clip, evenly spaced")
+          ->check(positive());
+      option("--breakdown", a.breakdown, "number of descriptions to list separately, the most frequent first")
+          ->check(not_negative());
+      verb->add_option("--json", a.json, "also write all results as JSON")->type_name("FILE");
+      verb->callback([&job, args, verb] {
+        fill_in_procedural(*verb, args->procedural);
+        job = [args, verb] { return run_evaluation(*args, *verb); };
+      });
+    }};
 
 }  // namespace
 

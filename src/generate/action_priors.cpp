@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "motiongan/core/random.hpp"
-#include "motiongan/formats/bvh_reader.hpp"
 #include "motiongan/data/clip_source.hpp"
+#include "motiongan/formats/bvh_reader.hpp"
 #include "motiongan/formats/text_file.hpp"
 #include "motiongan/train/run.hpp"
 
@@ -31,7 +31,7 @@ SourceClip source_of(const motion::Motion& motion, const std::string& id,
 
 SourceClip read_source(const fs::path& file, const std::string& id, const motion::PositionFormat& format,
                        const ActionDataArgs& data) {
-  if (motion::action_dataset_detail::extension_of(file) != ".bvh") {
+  if (motion::extension_of(file) != ".bvh") {
     motion::PositionClip clip =
         motion::resample(motion::read_position_file(file, data.options.bones, format.rate), format.rate);
     clip.id = id;
@@ -64,8 +64,7 @@ std::vector<SplitLine> pool_of(std::vector<SplitLine> lines, const std::string& 
     return true;
   };
   if (!keep([](const SplitLine& line) { return !line.train; }))
-    fmt::print("{} has no test clips: priors are drawn from training clips\n",
-               split.string());
+    fmt::print("{} has no test clips: priors are drawn from training clips\n", split.string());
   if (!keep([&](const SplitLine& line) { return line.label == label; }))
     fmt::print("there is no test clip of class '{}': priors are drawn from other classes\n", label);
   const RandomKey key{.seed = seed, .stream = RandomStream::seeding};
@@ -111,7 +110,7 @@ std::vector<GivenPrior> draw_priors(const fs::path& run, const motion::PositionF
   if (data.procedural > 0) {
     builtin = procedural_clips(data);
   } else {
-    const auto all = motion::action_dataset_detail::find_clip_files(data.folder, data.options);
+    const auto all = motion::action_dataset_detail::clip_files(data.folder, data.options);
     const auto ids = motion::clip_ids(all, data.folder);
     for (std::size_t i = 0; i < all.size(); ++i) files[ids[i]] = all[i];
   }

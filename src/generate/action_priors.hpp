@@ -1,16 +1,15 @@
 // Priors, the seconds of motion that an attention model continues: read from files, or drawn from a run's
 // clips.
 #pragma once
-#include "shared/action_data.hpp"
 #include "motiongan/data/action_prior.hpp"
+#include "shared/action_data.hpp"
 
 namespace motiongan::command {
 
 struct GivenPrior {
   ActionPrior prior;
-  std::vector<motion::Quat>
-      reference;     ///< [joints], joint rotations at its end; empty if the file has none
-  std::string from;  ///< for messages: "07_01 from 1.5 s on"
+  std::vector<motion::Quat> reference;  ///< [joints], joint rotations at its end; empty if the file has none
+  std::string from;                     ///< for messages: "07_01 from 1.5 s on"
 };
 
 /// Reads the second of motion that starts `seconds` into the clip, counted after a T-pose at its start.

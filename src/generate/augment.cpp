@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <map>
 
-#include "shared/action_files.hpp"
 #include "generate/action_priors.hpp"
 #include "motiongan/data/clip_source.hpp"
+#include "shared/action_files.hpp"
 #include "shared/prompt.hpp"
 
 namespace motiongan::command {
@@ -30,9 +30,8 @@ bool gives_split(const CLI::App& verb) {
 /// command line asks for another split, only prints how many held-out clips the model was trained on.
 void follow_split(motion::ActionDataset& data, const fs::path& split, bool other_split) {
   if (!fs::exists(split)) {
-    fmt::print(
-        "there is no {}: the split may differ from the one that the model was trained with\n",
-        split.string());
+    fmt::print("there is no {}: the split may differ from the one that the model was trained with\n",
+               split.string());
     return;
   }
   std::map<std::string, bool> trained;
@@ -55,13 +54,11 @@ void follow_split(motion::ActionDataset& data, const fs::path& split, bool other
     }
   data.train = std::move(train);
   data.test = std::move(test);
-  require(!data.train.empty(), "the model was trained on none of these clips (", split.string(),
-          ")");
+  require(!data.train.empty(), "the model was trained on none of these clips (", split.string(), ")");
 }
 
 /// Writes the clips, and labels.tsv to train on them.
-void write_clips(const AugmentArgs& args, const ActionGan& model,
-                 const std::vector<SyntheticClip>& clips) {
+void write_clips(const AugmentArgs& args, const ActionGan& model, const std::vector<SyntheticClip>& clips) {
   const fs::path out = args.out;
   make_folder(out);
   std::vector<std::string> names;
@@ -105,32 +102,34 @@ int augment(AugmentArgs args, const CLI::App& verb) {
   return args.study ? run_study(args.studied, model, data, clips) : 0;
 }
 
-const Verb augment_verb{"augment", [](CLI::App& app, Job& job) {
-  CLI::App* verb = app.add_subcommand("augment",
-                                      "Generate one synthetic clip for each training clip, with the same "
-                                      "first second, class and length, by a\n"
-                                      "model of `motiongan train attention`. Clips and labels are those of "
-                                      "its run unless others are given.\n"
-                                      "--study trains classifiers with and without the synthetic clips, and "
-                                      "tests them on the held-out clips.");
-  const auto args = std::make_shared<AugmentArgs>();
-  verb->add_option("MODEL", args->model, "model file, or the --save folder of a training run")
-      ->required()
-      ->type_name("");
-  add_action_data_options(*verb, args->data, false);
-  verb->add_option("--out", args->out, "folder for the clips and labels.tsv; created if missing")
-      ->type_name("DIR");
-  add_format_option(*verb, args->format);
-  verb->add_option("--seed", args->seed, "seed of the noise, if the model has any")
-      ->check(not_negative())
-      ->capture_default_str();
-  verb->add_flag("--study", args->study, "train and compare classifiers");
-  add_study_options(*verb, args->studied);
-  verb->callback([&job, args, verb] {
-    fill_in_procedural(*verb, args->data.procedural);
-    job = [args, verb] { return augment(*args, *verb); };
-  });
-}};
+const Verb augment_verb{
+    "augment", [](CLI::App& app, Job& job) {
+      CLI::App* verb =
+          app.add_subcommand("augment",
+                             "Generate one synthetic clip for each training clip, with the same "
+                             "first second, class and length, by a\n"
+                             "model of `motiongan train attention`. Clips and labels are those of "
+                             "its run unless others are given.\n"
+                             "--study trains classifiers with and without the synthetic clips, and "
+                             "tests them on the held-out clips.");
+      const auto args = std::make_shared<AugmentArgs>();
+      verb->add_option("MODEL", args->model, "model file, or the --save folder of a training run")
+          ->required()
+          ->type_name("");
+      add_action_data_options(*verb, args->data, false);
+      verb->add_option("--out", args->out, "folder for the clips and labels.tsv; created if missing")
+          ->type_name("DIR");
+      add_format_option(*verb, args->format);
+      verb->add_option("--seed", args->seed, "seed of the noise, if the model has any")
+          ->check(not_negative())
+          ->capture_default_str();
+      verb->add_flag("--study", args->study, "train and compare classifiers");
+      add_study_options(*verb, args->studied);
+      verb->callback([&job, args, verb] {
+        fill_in_procedural(*verb, args->data.procedural);
+        job = [args, verb] { return augment(*args, *verb); };
+      });
+    }};
 
 }  // namespace
 

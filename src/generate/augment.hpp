@@ -1,8 +1,8 @@
 // Shared by the parts of motiongan augment.
 #pragma once
-#include "shared/action_data.hpp"
 #include "motiongan/models/action_gan.hpp"
 #include "motiongan/sample/action_generate.hpp"
+#include "shared/action_data.hpp"
 
 namespace motiongan::command {
 

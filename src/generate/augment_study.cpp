@@ -60,8 +60,7 @@ void add_study_options(CLI::App& verb, StudyArgs& a) {
 
 int run_study(const StudyArgs& args, const ActionGan& model, const motion::ActionDataset& data,
               const std::vector<SyntheticClip>& synthetic) {
-  require(!data.test.empty(),
-          "the study needs test clips, but none are held out for testing");
+  require(!data.test.empty(), "the study needs test clips, but none are held out for testing");
   AugmentationStudyOptions options{.seeds = args.seeds,
                                    .iterations = args.iterations,
                                    .max_minutes = args.minutes,

@@ -2,15 +2,15 @@
 #include <charconv>
 #include <cmath>
 
+#include "generate/streaming.hpp"
+#include "motiongan/data/first_frame.hpp"
+#include "motiongan/formats/bvh.hpp"
 #include "motiongan/metrics/euler_error.hpp"
 #include "motiongan/models/dvgan.hpp"
-#include "motiongan/formats/bvh.hpp"
-#include "motiongan/data/first_frame.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "shared/prompt.hpp"
 #include "shared/show.hpp"
 #include "shared/signals.hpp"
-#include "generate/streaming.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -192,47 +192,55 @@ int complete(const CompleteArgs& args) {
   return 0;
 }
 
-const Verb complete_verb{"complete", [](CLI::App& app, Job& job) {
-  CLI::App* verb = app.add_subcommand(
-      "complete",
-      "Continue the first frames of a clip, guided by a text.\n"
-      "Each file (CLIP_walk-slowly_000.bvh) contains the seed frames, at the model's rate and with the\n"
-      "clip's bone lengths, then the generated frames; existing files are replaced. While the clip itself\n"
-      "continues, errors against it are printed. Needs a model with an RNN generator.");
-  const auto args = std::make_shared<CompleteArgs>();
-  const auto option = [&](const char* name, auto& member, const char* text) {
-    return verb->add_option(name, member, text);
-  };
-  option("MODEL", args->model, "model file, or the --save folder of a training run")->required()->type_name("");
-  option("--prior", args->prior, "BVH clip to continue, with the model's skeleton")
-      ->required()
-      ->type_name("CLIP.bvh");
-  option("--text", args->text, "description of what comes next")->required()->type_name("TEXT");
-  option("--seed-frames", args->seed_frames, "frames of the clip to start with, at the model's rate")
-      ->check(positive())
-      ->capture_default_str();
-  option("--frames", args->frames, "frames to generate after them; any number")
-      ->check(positive())
-      ->capture_default_str();
-  option("--from", args->from,
-         "where in the clip the seed starts: a frame (240) or seconds (2.5s) [its start]")
-      ->type_name("FRAME");
-  option("--count", args->count, "number of different continuations")->check(positive())->capture_default_str();
-  option("--seed", args->seed, "random seed; another one gives other continuations")
-      ->check(not_negative())
-      ->capture_default_str();
-  option("--first-sample", args->first_sample, "number of the first sample")
-      ->check(not_negative())
-      ->capture_default_str();
-  option("--rate", args->rate, "frames per second of the files, by interpolation [the model's]")
-      ->check(CLI::Range(1e-3, 1e4))
-      ->type_name("HZ");
-  option("--out", args->out, "folder to write to; created if missing")->capture_default_str()->type_name("DIR");
-  option("--html", args->html, "also write an HTML page: the clip next to its continuations")
-      ->type_name("FILE");
-  option("--png", args->png, "also write a picture of their poses")->type_name("FILE");
-  verb->callback([&job, args] { job = [args] { return complete(*args); }; });
-}};
+const Verb complete_verb{
+    "complete", [](CLI::App& app, Job& job) {
+      CLI::App* verb = app.add_subcommand(
+          "complete",
+          "Continue the first frames of a clip, guided by a text.\n"
+          "Each file (CLIP_walk-slowly_000.bvh) contains the seed frames, at the model's rate and with the\n"
+          "clip's bone lengths, then the generated frames; existing files are replaced. While the clip "
+          "itself\n"
+          "continues, errors against it are printed. Needs a model with an RNN generator.");
+      const auto args = std::make_shared<CompleteArgs>();
+      const auto option = [&](const char* name, auto& member, const char* text) {
+        return verb->add_option(name, member, text);
+      };
+      option("MODEL", args->model, "model file, or the --save folder of a training run")
+          ->required()
+          ->type_name("");
+      option("--prior", args->prior, "BVH clip to continue, with the model's skeleton")
+          ->required()
+          ->type_name("CLIP.bvh");
+      option("--text", args->text, "description of what comes next")->required()->type_name("TEXT");
+      option("--seed-frames", args->seed_frames, "frames of the clip to start with, at the model's rate")
+          ->check(positive())
+          ->capture_default_str();
+      option("--frames", args->frames, "frames to generate after them; any number")
+          ->check(positive())
+          ->capture_default_str();
+      option("--from", args->from,
+             "where in the clip the seed starts: a frame (240) or seconds (2.5s) [its start]")
+          ->type_name("FRAME");
+      option("--count", args->count, "number of different continuations")
+          ->check(positive())
+          ->capture_default_str();
+      option("--seed", args->seed, "random seed; another one gives other continuations")
+          ->check(not_negative())
+          ->capture_default_str();
+      option("--first-sample", args->first_sample, "number of the first sample")
+          ->check(not_negative())
+          ->capture_default_str();
+      option("--rate", args->rate, "frames per second of the files, by interpolation [the model's]")
+          ->check(CLI::Range(1e-3, 1e4))
+          ->type_name("HZ");
+      option("--out", args->out, "folder to write to; created if missing")
+          ->capture_default_str()
+          ->type_name("DIR");
+      option("--html", args->html, "also write an HTML page: the clip next to its continuations")
+          ->type_name("FILE");
+      option("--png", args->png, "also write a picture of their poses")->type_name("FILE");
+      verb->callback([&job, args] { job = [args] { return complete(*args); }; });
+    }};
 
 }  // namespace
 

@@ -1,7 +1,7 @@
 // Drift of generated motion over time, averaged over all motions of a command.
 #pragma once
-#include "shared/command.hpp"
 #include "motiongan/metrics/drift.hpp"
+#include "shared/command.hpp"
 
 namespace motiongan::command {
 

@@ -1,13 +1,13 @@
 // motiongan generate: generates motion for a text, or for classes.
 #include "generate/generate_actions.hpp"
+#include "generate/streaming.hpp"
+#include "motiongan/formats/bvh.hpp"
 #include "motiongan/models/action_gan.hpp"
 #include "motiongan/models/dvgan.hpp"
-#include "motiongan/formats/bvh.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "shared/prompt.hpp"
 #include "shared/show.hpp"
 #include "shared/signals.hpp"
-#include "generate/streaming.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -134,8 +134,8 @@ int generate_either(const GenerateArgs& args, ActionGenerateArgs actions, const 
   const fs::path file = model_file(args.model);
   if (!holds_model<ActionGan>(io::SafeTensors::read(file))) {
     const std::string wrong = given_action_options(verb);
-    require(wrong.empty(), file.string(), " generates motion for a text: it has no classes, and takes no ", wrong,
-            "; use --text \"walk\"");
+    require(wrong.empty(), file.string(), " generates motion for a text: it has no classes, and takes no ",
+            wrong, "; use --text \"walk\"");
     return generate(args, file);
   }
   for (const char* name : {"--text", "--prompts", "--drift"})
@@ -148,53 +148,58 @@ int generate_either(const GenerateArgs& args, ActionGenerateArgs actions, const 
   return generate_actions(actions, verb, file);
 }
 
-const Verb generate_verb{"generate", [](CLI::App& app, Job& job) {
-  CLI::App* verb = app.add_subcommand(
-      "generate",
-      "Generate motion for a text, or continue a second of motion in given classes, and write it as files.\n"
-      "Files are named after the text and the sample number (walk-slowly_000.bvh); existing files are\n"
-      "replaced. The same model, text, seed and sample give the same motion, whatever --count is. A model\n"
-      "with an RNN generator generates any number of frames and writes them as it goes.");
-  const auto args = std::make_shared<GenerateArgs>();
-  const auto actions = std::make_shared<ActionGenerateArgs>();
-  verb->add_option("MODEL", args->model, "model file, or the --save folder of a training run")
-      ->required()
-      ->type_name("");
-  verb->add_option("--text", args->texts, "description of the motion; may be repeated")
-      ->type_name("TEXT")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb->add_option("--prompts", args->prompts, "file with a text on each line")->type_name("FILE");
-  verb->add_option("--count", args->options.count, "motions for each text, or for the schedule of classes")
-      ->check(positive())
-      ->capture_default_str();
-  verb->add_option("--seed", args->options.seed, "random seed; another one gives other motions")
-      ->check(not_negative())
-      ->capture_default_str();
-  verb->add_option("--first-sample", args->options.first_sample, "number of the first sample")
-      ->check(not_negative())
-      ->capture_default_str();
-  verb->add_option("--frames", args->options.frames,
-                   "frames of each motion, at the model's rate; other numbers need an RNN generator [the "
-                   "model's]")
-      ->check(positive())
-      ->type_name("N");
-  verb->add_option("--drift", args->drift,
-                   "table to write: drift from the training data, second by second")
-      ->type_name("FILE.csv");
-  verb->add_option("--rate", args->rate, "frames per second of the files, by interpolation [the model's]")
-      ->check(CLI::Range(1e-3, 1e4))
-      ->type_name("HZ");
-  verb->add_option("--out", args->out, "folder to write to; created if missing")
-      ->capture_default_str()
-      ->type_name("DIR");
-  verb->add_option("--html", args->html, "also write an HTML page that plays the motions")->type_name("FILE");
-  verb->add_option("--png", args->png, "also write a picture of their poses")->type_name("FILE");
-  add_action_options(*verb, *actions);
-  verb->callback([&job, args, actions, verb] {
-    job = [args, actions, verb] { return generate_either(*args, *actions, *verb); };
-  });
-}};
+const Verb generate_verb{
+    "generate", [](CLI::App& app, Job& job) {
+      CLI::App* verb = app.add_subcommand(
+          "generate",
+          "Generate motion for a text, or continue a second of motion in given classes, and write it as "
+          "files.\n"
+          "Files are named after the text and the sample number (walk-slowly_000.bvh); existing files are\n"
+          "replaced. The same model, text, seed and sample give the same motion, whatever --count is. A "
+          "model\n"
+          "with an RNN generator generates any number of frames and writes them as it goes.");
+      const auto args = std::make_shared<GenerateArgs>();
+      const auto actions = std::make_shared<ActionGenerateArgs>();
+      verb->add_option("MODEL", args->model, "model file, or the --save folder of a training run")
+          ->required()
+          ->type_name("");
+      verb->add_option("--text", args->texts, "description of the motion; may be repeated")
+          ->type_name("TEXT")
+          ->expected(1)
+          ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      verb->add_option("--prompts", args->prompts, "file with a text on each line")->type_name("FILE");
+      verb->add_option("--count", args->options.count,
+                       "motions for each text, or for the schedule of classes")
+          ->check(positive())
+          ->capture_default_str();
+      verb->add_option("--seed", args->options.seed, "random seed; another one gives other motions")
+          ->check(not_negative())
+          ->capture_default_str();
+      verb->add_option("--first-sample", args->options.first_sample, "number of the first sample")
+          ->check(not_negative())
+          ->capture_default_str();
+      verb->add_option("--frames", args->options.frames,
+                       "frames of each motion, at the model's rate; other numbers need an RNN generator [the "
+                       "model's]")
+          ->check(positive())
+          ->type_name("N");
+      verb->add_option("--drift", args->drift,
+                       "table to write: drift from the training data, second by second")
+          ->type_name("FILE.csv");
+      verb->add_option("--rate", args->rate, "frames per second of the files, by interpolation [the model's]")
+          ->check(CLI::Range(1e-3, 1e4))
+          ->type_name("HZ");
+      verb->add_option("--out", args->out, "folder to write to; created if missing")
+          ->capture_default_str()
+          ->type_name("DIR");
+      verb->add_option("--html", args->html, "also write an HTML page that plays the motions")
+          ->type_name("FILE");
+      verb->add_option("--png", args->png, "also write a picture of their poses")->type_name("FILE");
+      add_action_options(*verb, *actions);
+      verb->callback([&job, args, actions, verb] {
+        job = [args, actions, verb] { return generate_either(*args, *actions, *verb); };
+      });
+    }};
 
 }  // namespace
 

@@ -2,9 +2,9 @@
 #pragma once
 #include <optional>
 
-#include "shared/command.hpp"
 #include "generate/drift_report.hpp"
 #include "motiongan/sample/motion_stream.hpp"
+#include "shared/command.hpp"
 #include "shared/show.hpp"
 
 namespace motiongan::command {

@@ -1,8 +1,8 @@
 // motiongan synth: writes the built-in procedural motion as files.
-#include "shared/command.hpp"
 #include "motiongan/formats/bvh.hpp"
-#include "motiongan/procedural/procedural.hpp"
 #include "motiongan/formats/text_file.hpp"
+#include "motiongan/procedural/procedural.hpp"
+#include "shared/command.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -35,24 +35,25 @@ int synthesise(const SynthArgs& args) {
   return 0;
 }
 
-const Verb synth_verb{"synth", [](CLI::App& app, Job& job) {
-  CLI::App* verb =
-      app.add_subcommand("synth", "Write the built-in procedural motion as BVH files with captions");
-  const auto args = std::make_shared<SynthArgs>();
-  verb->add_option("DIR", args->folder,
-                   "folder to write to; created if missing, files of the same names are replaced")
-      ->required()
-      ->type_name("");
-  verb->add_option("--clips", args->options.clips, "number of clips, cycling through the actions")
-      ->check(not_negative())
-      ->capture_default_str();
-  verb->add_option("--seconds", args->options.seconds, "length of each clip")->capture_default_str();
-  verb->add_option("--rate", args->options.rate, "frames per second")->capture_default_str();
-  verb->add_option("--seed", args->options.seed, "random seed; another one gives other performers")
-      ->check(not_negative())
-      ->capture_default_str();
-  verb->callback([&job, args] { job = [args] { return synthesise(*args); }; });
-}};
+const Verb synth_verb{
+    "synth", [](CLI::App& app, Job& job) {
+      CLI::App* verb =
+          app.add_subcommand("synth", "Write the built-in procedural motion as BVH files with captions");
+      const auto args = std::make_shared<SynthArgs>();
+      verb->add_option("DIR", args->folder,
+                       "folder to write to; created if missing, files of the same names are replaced")
+          ->required()
+          ->type_name("");
+      verb->add_option("--clips", args->options.clips, "number of clips, cycling through the actions")
+          ->check(not_negative())
+          ->capture_default_str();
+      verb->add_option("--seconds", args->options.seconds, "length of each clip")->capture_default_str();
+      verb->add_option("--rate", args->options.rate, "frames per second")->capture_default_str();
+      verb->add_option("--seed", args->options.seed, "random seed; another one gives other performers")
+          ->check(not_negative())
+          ->capture_default_str();
+      verb->callback([&job, args] { job = [args] { return synthesise(*args); }; });
+    }};
 
 }  // namespace
 

@@ -36,9 +36,10 @@ int list_devices() {
 }
 
 const Verb devices_verb{"devices", [](CLI::App& app, Job& job) {
-  CLI::App* verb = app.add_subcommand("devices", "List the OpenCL devices and mark the selected one");
-  verb->callback([&job] { job = list_devices; });
-}};
+                          CLI::App* verb = app.add_subcommand(
+                              "devices", "List the OpenCL devices and mark the selected one");
+                          verb->callback([&job] { job = list_devices; });
+                        }};
 
 }  // namespace
 

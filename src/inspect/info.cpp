@@ -1,13 +1,13 @@
 // motiongan info: shows what a file or a folder contains.
 #include "inspect/info.hpp"
 
-#include "motiongan/io/safetensors.hpp"
-#include "motiongan/formats/bvh.hpp"
-#include "motiongan/data/first_frame.hpp"
-#include "motiongan/motion/motion.hpp"
-#include "motiongan/data/pose.hpp"
-#include "motiongan/train/csv_log.hpp"
 #include "inspect/plot_log.hpp"
+#include "motiongan/data/first_frame.hpp"
+#include "motiongan/data/pose.hpp"
+#include "motiongan/formats/bvh.hpp"
+#include "motiongan/io/safetensors.hpp"
+#include "motiongan/motion/motion.hpp"
+#include "motiongan/train/csv_log.hpp"
 #include "shared/write_png.hpp"
 
 namespace motiongan::command {
@@ -38,9 +38,8 @@ void print_clip(const fs::path& file) {
   print_fact("joints", names);
   if (clip.frames == 0) return;
   const std::size_t posed = motion::t_pose_frames(clip);
-  print_fact("first frame", posed > 0
-                                ? fmt::format("T-pose: {} before the motion", counted(posed, "frame"))
-                                : "part of the motion (no T-pose)");
+  print_fact("first frame", posed > 0 ? fmt::format("T-pose: {} before the motion", counted(posed, "frame"))
+                                      : "part of the motion (no T-pose)");
   const auto root = static_cast<std::size_t>(motion::moving_root(motion));
   double travelled = 0;
   for (std::size_t f = posed + 1; f < clip.frames; ++f)
@@ -58,9 +57,8 @@ void print_log(const fs::path& file, const std::string& png) {
     fmt::print("  {:<22} {}\n", log.columns[c], brief(log.rows.back()[c], 6));
   if (std::find(log.columns.begin(), log.columns.end(), "wasserstein") != log.columns.end()) {
     const CurveSummary w = summarise(log.column("wasserstein"));
-    fmt::print(
-        "the Wasserstein estimate peaked at iteration {:.0f} ({}) and ended at {} (running means)\n",
-        log.column("iteration")[w.peak_at], brief(w.peak), brief(w.last));
+    fmt::print("the Wasserstein estimate peaked at iteration {:.0f} ({}) and ended at {} (running means)\n",
+               log.column("iteration")[w.peak_at], brief(w.peak), brief(w.last));
   }
   if (png.empty()) return;
   make_folder_of(png);
@@ -90,18 +88,20 @@ int info(const InfoArgs& args) {
   return 0;
 }
 
-const Verb info_verb{"info", [](CLI::App& app, Job& job) {
-  CLI::App* verb = app.add_subcommand("info",
-                                      "Show what a file or a folder contains: a model or checkpoint "
-                                      "(.safetensors), the folder of a run, a BVH\n"
-                                      "clip, a folder of clips with their captions, the log.csv of a run.");
-  const auto args = std::make_shared<InfoArgs>();
-  verb->add_option("PATH", args->path, "file or folder")->required()->type_name("");
-  verb->add_option("--captions", args->captions, "captions of a folder of clips [captions.tsv in it]")
-      ->type_name("FILE");
-  verb->add_option("--png", args->png, "picture to write: the curves of a log.csv")->type_name("FILE");
-  verb->callback([&job, args] { job = [args] { return info(*args); }; });
-}};
+const Verb info_verb{
+    "info", [](CLI::App& app, Job& job) {
+      CLI::App* verb =
+          app.add_subcommand("info",
+                             "Show what a file or a folder contains: a model or checkpoint "
+                             "(.safetensors), the folder of a run, a BVH\n"
+                             "clip, a folder of clips with their captions, the log.csv of a run.");
+      const auto args = std::make_shared<InfoArgs>();
+      verb->add_option("PATH", args->path, "file or folder")->required()->type_name("");
+      verb->add_option("--captions", args->captions, "captions of a folder of clips [captions.tsv in it]")
+          ->type_name("FILE");
+      verb->add_option("--png", args->png, "picture to write: the curves of a log.csv")->type_name("FILE");
+      verb->callback([&job, args] { job = [args] { return info(*args); }; });
+    }};
 
 }  // namespace
 

@@ -3,10 +3,10 @@
 #include <map>
 
 #include "inspect/info.hpp"
-#include "motiongan/formats/bvh.hpp"
 #include "motiongan/data/captions.hpp"
 #include "motiongan/data/clip_source.hpp"
 #include "motiongan/data/first_frame.hpp"
+#include "motiongan/formats/bvh.hpp"
 #include "motiongan/motion/motion.hpp"
 
 namespace motiongan::command {
@@ -117,7 +117,7 @@ void print_captions(const std::vector<ClipFacts>& clips) {
 void print_folder(const fs::path& folder, const fs::path& given) {
   const fs::path file = captions_for(folder, given);
   const motion::Captions captions = file.empty() ? motion::Captions{} : motion::read_captions(file);
-  const std::vector<fs::path> files = motion::find_bvh_files(folder);
+  const std::vector<fs::path> files = motion::find_clip_files(folder);
   const std::vector<std::string> ids = motion::clip_ids(files, folder);
   std::vector<ClipFacts> clips(files.size());
   motion::in_two_threads(files.size(),
@@ -127,10 +127,11 @@ void print_folder(const fs::path& folder, const fs::path& given) {
   fmt::print("{}: a folder of clips\n", folder.string());
   print_kinds(clips);
   print_fact("captions",
-             file.empty()  ? "none (no captions.tsv, no --captions): taken from file names"
-             : unnamed > 0 ? fmt::format("from {}; {} not in it, captioned by their file names (in parentheses)",
-                                         file.string(), counted(static_cast<std::size_t>(unnamed), "clip"))
-                           : "from " + file.string());
+             file.empty() ? "none (no captions.tsv, no --captions): taken from file names"
+             : unnamed > 0
+                 ? fmt::format("from {}; {} not in it, captioned by their file names (in parentheses)",
+                               file.string(), counted(static_cast<std::size_t>(unnamed), "clip"))
+                 : "from " + file.string());
   print_windows(clips);
   print_captions(clips);
 }

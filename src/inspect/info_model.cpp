@@ -50,7 +50,9 @@ void print_options(std::string_view fact, const std::string& json) {
     std::string name = key.starts_with("--") ? key.substr(2) : key;
     std::string text = value.is_string() ? value.get<std::string>() : value.dump();
     if (value.is_boolean()) text = value.get<bool>() ? "on" : "off";
-    if (text.empty() || value.is_null() || value == nlohmann::json::array() || (name == "procedural" && text == "0")) continue;
+    if (text.empty() || value.is_null() || value == nlohmann::json::array() ||
+        (name == "procedural" && text == "0"))
+      continue;
     if (name == "FOLDER") name = "folder";
     std::replace(name.begin(), name.end(), '_', '-');
     texts.push_back(fmt::format("{} {}", name, text));

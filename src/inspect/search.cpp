@@ -2,12 +2,12 @@
 #include <future>
 #include <nlohmann/json.hpp>
 
-#include "motiongan/search/collection.hpp"
-#include "motiongan/search/ranking.hpp"
+#include "motiongan/data/captions.hpp"
+#include "motiongan/formats/bvh.hpp"
 #include "motiongan/models/action_gan.hpp"
 #include "motiongan/models/dvgan.hpp"
-#include "motiongan/formats/bvh.hpp"
-#include "motiongan/data/captions.hpp"
+#include "motiongan/search/collection.hpp"
+#include "motiongan/search/ranking.hpp"
 #include "shared/prompt.hpp"
 #include "shared/show.hpp"
 
@@ -53,7 +53,7 @@ Found find(const Dvgan& model, const SearchArgs& args, const SearchCollection& c
   const SearchOptions options{args.top, args.hop, args.windows};
   found.hop = search_hop(format, options);
   found.hypotheses = std::move(hypotheses);
-  const SearchRanking ranking = motiongan::search(model.context(), index, found.hypotheses, options);
+  const SearchRanking ranking = rank_clips(model.context(), index, found.hypotheses, options);
   for (const SearchClip& clip : index.clips()) clip.left_out.empty() ? ++found.clips : ++found.left_out;
   found.windows = ranking.windows;
   found.median = ranking.median;
@@ -224,45 +224,48 @@ int search(const SearchArgs& args) {
   return 0;
 }
 
-const Verb search_verb{"search", [](CLI::App& app, Job& job) {
-  CLI::App* verb = app.add_subcommand(
-      "search",
-      "Find the clips of a collection whose motion matches a text.\n"
-      "The model generates hypotheses for the text; every window of every clip is compared with all of\n"
-      "them, at shifts of up to half a window, and clips are listed by the distance of their nearest\n"
-      "window. The collection's index is kept in COLLECTION/.motiongan-search, or in the file of --index.");
-  const auto args = std::make_shared<SearchArgs>();
-  const auto option = [&](const char* name, auto& member, const char* text) {
-    return verb->add_option(name, member, text);
-  };
-  option("--model", args->model, "model file, or the --save folder of a training run")
-      ->required()
-      ->type_name("MODEL");
-  option("--text", args->text, "description of the motion to find")->required()->type_name("TEXT");
-  option("--collection", args->collection, "folder of BVH clips of the model's skeleton, or one file")
-      ->required()
-      ->type_name("DIR");
-  option("--hypotheses", args->hypotheses, "motions to generate for the text")
-      ->check(positive())
-      ->capture_default_str();
-  option("--seed", args->seed, "random seed; another one gives other hypotheses")
-      ->check(not_negative())
-      ->capture_default_str();
-  option("--top", args->top, "number of results")->check(positive())->capture_default_str();
-  verb->add_flag("--windows", args->windows, "list windows instead of clips; a clip may then appear more than once");
-  option("--hop", args->hop, "frames between two windows of a clip, at the model's rate [half a window]")
-      ->check(positive());
-  option("--captions", args->captions, "captions to show with the clips [captions.tsv in the folder]")
-      ->check(CLI::ExistingFile)
-      ->type_name("FILE");
-  option("--index", args->index, "where the collection's index is kept")->type_name("FILE");
-  option("--json", args->json, "also write the results as JSON; -: to the terminal instead of the table")
-      ->type_name("FILE");
-  option("--html", args->html, "also write an HTML page: each clip next to its nearest hypotheses")
-      ->type_name("FILE");
-  option("--out", args->out, "also write the hypotheses as BVH files here")->type_name("DIR");
-  verb->callback([&job, args] { job = [args] { return search(*args); }; });
-}};
+const Verb search_verb{
+    "search", [](CLI::App& app, Job& job) {
+      CLI::App* verb = app.add_subcommand(
+          "search",
+          "Find the clips of a collection whose motion matches a text.\n"
+          "The model generates hypotheses for the text; every window of every clip is compared with all of\n"
+          "them, at shifts of up to half a window, and clips are listed by the distance of their nearest\n"
+          "window. The collection's index is kept in COLLECTION/.motiongan-search, or in the file of "
+          "--index.");
+      const auto args = std::make_shared<SearchArgs>();
+      const auto option = [&](const char* name, auto& member, const char* text) {
+        return verb->add_option(name, member, text);
+      };
+      option("--model", args->model, "model file, or the --save folder of a training run")
+          ->required()
+          ->type_name("MODEL");
+      option("--text", args->text, "description of the motion to find")->required()->type_name("TEXT");
+      option("--collection", args->collection, "folder of BVH clips of the model's skeleton, or one file")
+          ->required()
+          ->type_name("DIR");
+      option("--hypotheses", args->hypotheses, "motions to generate for the text")
+          ->check(positive())
+          ->capture_default_str();
+      option("--seed", args->seed, "random seed; another one gives other hypotheses")
+          ->check(not_negative())
+          ->capture_default_str();
+      option("--top", args->top, "number of results")->check(positive())->capture_default_str();
+      verb->add_flag("--windows", args->windows,
+                     "list windows instead of clips; a clip may then appear more than once");
+      option("--hop", args->hop, "frames between two windows of a clip, at the model's rate [half a window]")
+          ->check(positive());
+      option("--captions", args->captions, "captions to show with the clips [captions.tsv in the folder]")
+          ->check(CLI::ExistingFile)
+          ->type_name("FILE");
+      option("--index", args->index, "where the collection's index is kept")->type_name("FILE");
+      option("--json", args->json, "also write the results as JSON; -: to the terminal instead of the table")
+          ->type_name("FILE");
+      option("--html", args->html, "also write an HTML page: each clip next to its nearest hypotheses")
+          ->type_name("FILE");
+      option("--out", args->out, "also write the hypotheses as BVH files here")->type_name("DIR");
+      verb->callback([&job, args] { job = [args] { return search(*args); }; });
+    }};
 
 }  // namespace
 

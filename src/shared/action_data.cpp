@@ -8,7 +8,8 @@
 namespace motiongan::command {
 
 void add_action_data_options(CLI::App& verb, ActionDataArgs& a, bool windows) {
-  verb.add_option("FOLDER", a.folder, "folder of BVH, CSV or NPY clips (searched recursively)")->type_name("");
+  verb.add_option("FOLDER", a.folder, "folder of BVH, CSV or NPY clips (searched recursively)")
+      ->type_name("");
   std::vector<std::string_view> without{"folder"};
   if (!windows) without.insert(without.end(), {"frames", "rate", "root_track"});
   add_options(verb, fields_of(a), "Data", {.without = without});
@@ -71,7 +72,8 @@ void print_data(const motion::ActionDataset& data, const ActionDataArgs& args) {
   const double window = 2 * static_cast<double>(format.frames) / format.rate;
   std::size_t windows = 0;
   for (const motion::ActionClip& clip : data.train) windows += data.starts(clip);
-  std::string clips = fmt::format("{} for training, {} held out for testing", data.train.size(), data.test.size());
+  std::string clips =
+      fmt::format("{} for training, {} held out for testing", data.train.size(), data.test.size());
   const auto left_out = [&](std::size_t n, const std::string& why) {
     if (n > 0) clips += fmt::format("; {} left out, {}", n, why);
   };
@@ -90,9 +92,9 @@ void print_data(const motion::ActionDataset& data, const ActionDataArgs& args) {
     classes += fmt::format("{}{} {}+{}", c > 0 ? ", " : "", format.classes[c], of(data.train), of(data.test));
   }
   print_fact("classes", classes + " (training + test clips)");
-  print_fact("labels", args.procedural > 0    ? "the built-in actions"
+  print_fact("labels", args.procedural > 0            ? "the built-in actions"
                        : !args.options.labels.empty() ? "from " + shown(args.options.labels)
-                       : args.options.folders ? "from the folders' names"
+                       : args.options.folders         ? "from the folders' names"
                                               : "from file names, by the pattern " + args.options.pattern);
   print_fact("skeleton",
              fmt::format("{}, root {}; {} per pose vary{}", counted(format.skeleton().size(), "joint"),

@@ -1,10 +1,10 @@
 // Writes position clips as BVH, CSV or NPY files.
 #pragma once
-#include "shared/command.hpp"
 #include "motiongan/data/action_source.hpp"
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/formats/position_files.hpp"
 #include "motiongan/motion/position_rotations.hpp"
+#include "shared/command.hpp"
 
 namespace motiongan::command {
 

@@ -71,12 +71,14 @@ void print_data(const motion::Dataset& data, const CaptionedDataArgs& args) {
     for (const motion::DatasetClip& clip : clips) n += data.starts(clip);
     return n;
   };
-  std::string clips = fmt::format("{} for training, {} held out for testing", data.train.size(), data.test.size());
+  std::string clips =
+      fmt::format("{} for training, {} held out for testing", data.train.size(), data.test.size());
   if (!data.skipped.empty())
     clips += fmt::format("; {} left out, shorter than {}", data.skipped.size(), duration(window));
   print_fact("clips", clips);
-  print_fact("windows", fmt::format("{} for training, of {} frames at {} per second ({})", windows(data.train),
-                                    format.frames, brief(format.rate), duration(window)));
+  print_fact("windows",
+             fmt::format("{} for training, of {} frames at {} per second ({})", windows(data.train),
+                         format.frames, brief(format.rate), duration(window)));
   const std::size_t used = data.train.size() + data.test.size();
   if (args.procedural > 0)
     print_fact("captions", "those of the built-in motion");
@@ -95,9 +97,11 @@ void print_data(const motion::Dataset& data, const CaptionedDataArgs& args) {
                          format.skeleton().joints[format.layout.root()].name, counted(format.dof(), "value"),
                          format.layout.root_position() ? ", including the root's position" : ""));
   if (data.dropped_frames > 0)
-    print_fact("first frame",
-               fmt::format("{} dropped at the start of clips{}", counted(data.dropped_frames, "frame"),
-                           args.data.first_frame == motion::FirstFrame::automatic ? " (a T-pose before the motion)" : ""));
+    print_fact(
+        "first frame",
+        fmt::format(
+            "{} dropped at the start of clips{}", counted(data.dropped_frames, "frame"),
+            args.data.first_frame == motion::FirstFrame::automatic ? " (a T-pose before the motion)" : ""));
 }
 
 }  // namespace motiongan::command

@@ -76,8 +76,8 @@ CLI::Validator in_range(const Range& range) {
             char* end = nullptr;
             const double value = std::strtod(text.c_str(), &end);
             const bool number = !text.empty() && *end == '\0';
-            return number && range.contains(value) ? std::string()
-                                                   : concat("expected ", range.text(), ", not ", text);
+            if (!number) return concat("expected a number, ", range.text(), ", not ", text);
+            return range.contains(value) ? std::string() : concat("expected ", range.text(), ", not ", text);
           },
           ""};
 }
@@ -106,8 +106,7 @@ void add_options(CLI::App& verb, const FieldList& fields, const std::string& gro
 std::string note_of(const FieldList& fields) {
   nlohmann::json out = nlohmann::json::object();
   for (const Field& field : fields)
-    if (const std::string name = field.option(); !name.empty())
-      out[name] = io::detail::field_to_json(field);
+    if (const std::string name = field.option(); !name.empty()) out[name] = io::detail::field_to_json(field);
   return out.dump();
 }
 

@@ -2,10 +2,10 @@
 #pragma once
 #include <set>
 
-#include "shared/command.hpp"
-#include "motiongan/formats/text_file.hpp"
 #include "motiongan/data/vocabulary.hpp"
+#include "motiongan/formats/text_file.hpp"
 #include "motiongan/train/run.hpp"
+#include "shared/command.hpp"
 
 namespace motiongan::command {
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <span>
 
-#include "shared/command.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/view/player.hpp"
 #include "motiongan/view/pose_strip.hpp"
+#include "shared/command.hpp"
 #include "shared/write_png.hpp"
 
 namespace motiongan::command {

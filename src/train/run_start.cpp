@@ -7,8 +7,7 @@ namespace motiongan::command {
 
 void add_run_options(CLI::App& verb, RunArgs& args, const std::string& save_default) {
   verb.add_option("--save", args.save, "folder of the run [" + save_default + "]")->type_name("DIR");
-  verb.add_flag("--resume", args.resume,
-                "continue the run in --save with its original options");
+  verb.add_flag("--resume", args.resume, "continue the run in --save with its original options");
   add_options(verb, fields_of(args.run), "Run");
 }
 
@@ -66,8 +65,9 @@ bool is_done(const RunStart& start, const RunArgs& args, std::size_t iterations)
 }
 
 void print_saved_to(const fs::path& folder, double save_every_minutes) {
-  print_fact("saved to",
-             fmt::format("{}, every {} and at the end", folder.string(), duration(save_every_minutes * 60)));
+  const std::string often =
+      save_every_minutes > 0 ? fmt::format("every {} and ", duration(save_every_minutes * 60)) : "";
+  print_fact("saved to", fmt::format("{}, {}at the end", folder.string(), often));
 }
 
 RunResult run_shown(Trainer& trainer, const std::function<void(const fs::path&)>& write_split,

@@ -110,23 +110,25 @@ int train_attention(AttentionArgs args, const CLI::App& verb) {
   return exit_status();
 }
 
-const Verb train_attention_verb{"train attention", [](CLI::App& train, Job& job) {
-  CLI::App* verb = train.add_subcommand(
-      "attention",
-      "Train the attention WGAN-GP on labelled clips: it continues a second of motion in a given class.\n"
-      "Writes generator, critic, classifier, checkpoint, log.csv and split.tsv to the --save folder. Ctrl-C\n"
-      "saves and stops; --resume continues as if the run had never stopped, and needs only --save.");
-  const auto args = std::make_shared<AttentionArgs>();
-  AttentionArgs& a = *args;
-  add_action_data_options(*verb, a.data, true);
-  add_options(*verb, fields_of(a.model), "Model");
-  add_options(*verb, fields_of(a.training), "Training");
-  add_run_options(*verb, a.run, "save/NAME, where NAME is that of FOLDER");
-  verb->callback([&job, args, verb] {
-    fill_in_procedural(*verb, args->data.procedural);
-    job = [args, verb] { return train_attention(*args, *verb); };
-  });
-}};
+const Verb train_attention_verb{
+    "train attention", [](CLI::App& train, Job& job) {
+      CLI::App* verb = train.add_subcommand(
+          "attention",
+          "Train the attention WGAN-GP on labelled clips: it continues a second of motion in a given class.\n"
+          "Writes generator, critic, classifier, checkpoint, log.csv and split.tsv to the --save folder. "
+          "Ctrl-C\n"
+          "saves and stops; --resume continues as if the run had never stopped, and needs only --save.");
+      const auto args = std::make_shared<AttentionArgs>();
+      AttentionArgs& a = *args;
+      add_action_data_options(*verb, a.data, true);
+      add_options(*verb, fields_of(a.model), "Model");
+      add_options(*verb, fields_of(a.training), "Training");
+      add_run_options(*verb, a.run, "save/NAME, where NAME is that of FOLDER");
+      verb->callback([&job, args, verb] {
+        fill_in_procedural(*verb, args->data.procedural);
+        job = [args, verb] { return train_attention(*args, *verb); };
+      });
+    }};
 
 }  // namespace
 }  // namespace motiongan::command

@@ -31,31 +31,34 @@ int train_dvgan(TrainDvganArgs args, const CLI::App& verb) {
   fmt::print("Ctrl-C saves and stops. The Wasserstein estimate should rise quickly, then fall slowly.\n");
 
   DvganTrainer trainer(model, data, args.training);
-  run_shown(trainer, [&](const fs::path& path) { data.write_split(path); }, args.run, start,
-            note_of(fields_of(kept)), {{"wasserstein", "wasserstein"}, {"penalty", "penalty"}}, "train dvgan");
+  run_shown(
+      trainer, [&](const fs::path& path) { data.write_split(path); }, args.run, start,
+      note_of(fields_of(kept)), {{"wasserstein", "wasserstein"}, {"penalty", "penalty"}}, "train dvgan");
   fmt::print("generate: {} generate {} --text \"{}\"\n", program(), start.folder.string(),
              data.train.front().captions.front());
   return exit_status();
 }
 
-const Verb train_dvgan_verb{"train dvgan", [](CLI::App& train, Job& job) {
-  CLI::App* verb = train.add_subcommand(
-      "dvgan",
-      "Train a DVGAN (text to motion) on a folder of BVH clips with captions.\n"
-      "Writes generator, critic, checkpoint, log.csv and split.tsv to the --save folder. Ctrl-C saves and "
-      "stops;\n"
-      "--resume continues as if the run had never stopped, and needs only --save.");
-  const auto args = std::make_shared<TrainDvganArgs>();
-  TrainDvganArgs& a = *args;
-  add_captioned_data_options(*verb, a);
-  add_options(*verb, fields_of(a.model), "Model");
-  add_options(*verb, fields_of(a.training), "Training");
-  add_run_options(*verb, a.run, "save/NAME, where NAME is that of FOLDER");
-  verb->callback([&job, args, verb] {
-    fill_in_procedural(*verb, args->procedural);
-    job = [args, verb] { return train_dvgan(*args, *verb); };
-  });
-}};
+const Verb train_dvgan_verb{
+    "train dvgan", [](CLI::App& train, Job& job) {
+      CLI::App* verb =
+          train.add_subcommand("dvgan",
+                               "Train a DVGAN (text to motion) on a folder of BVH clips with captions.\n"
+                               "Writes generator, critic, checkpoint, log.csv and split.tsv to the --save "
+                               "folder. Ctrl-C saves and "
+                               "stops;\n"
+                               "--resume continues as if the run had never stopped, and needs only --save.");
+      const auto args = std::make_shared<TrainDvganArgs>();
+      TrainDvganArgs& a = *args;
+      add_captioned_data_options(*verb, a);
+      add_options(*verb, fields_of(a.model), "Model");
+      add_options(*verb, fields_of(a.training), "Training");
+      add_run_options(*verb, a.run, "save/NAME, where NAME is that of FOLDER");
+      verb->callback([&job, args, verb] {
+        fill_in_procedural(*verb, args->procedural);
+        job = [args, verb] { return train_dvgan(*args, *verb); };
+      });
+    }};
 
 }  // namespace
 }  // namespace motiongan::command

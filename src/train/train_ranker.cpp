@@ -40,29 +40,32 @@ int train_ranker(TrainRankerArgs args, const CLI::App& verb) {
              start.done > 0 ? fmt::format("; resuming after iteration {}", start.done) : "");
 
   RankerTrainer trainer(ranker, data, args.training);
-  run_shown(trainer, [&](const fs::path& path) { data.write_split(path); }, args.run, start,
-            note_of(fields_of(kept)), {{"loss", "loss"}, {"recall1", "R@1"}}, "train ranker");
+  run_shown(
+      trainer, [&](const fs::path& path) { data.write_split(path); }, args.run, start,
+      note_of(fields_of(kept)), {{"loss", "loss"}, {"recall1", "R@1"}}, "train ranker");
   fmt::print("evaluate: {} evaluate ranker {}\n", program(), start.folder.string());
   return exit_status();
 }
 
-const Verb train_ranker_verb{"train ranker", [](CLI::App& train, Job& job) {
-  CLI::App* verb = train.add_subcommand(
-      "ranker",
-      "Train a ranker, which scores how well a description fits a motion and is used to evaluate DVGANs.\n"
-      "Writes ranker, checkpoint, log.csv and split.tsv to the --save folder. Ctrl-C saves and stops; "
-      "--resume\ncontinues as if the run had never stopped, and needs only --save.");
-  const auto args = std::make_shared<TrainRankerArgs>();
-  TrainRankerArgs& a = *args;
-  add_captioned_data_options(*verb, a);
-  add_options(*verb, fields_of(a.model), "Model");
-  add_options(*verb, fields_of(a.training), "Training");
-  add_run_options(*verb, a.run, "save/NAME-ranker, where NAME is that of FOLDER");
-  verb->callback([&job, args, verb] {
-    fill_in_procedural(*verb, args->procedural);
-    job = [args, verb] { return train_ranker(*args, *verb); };
-  });
-}};
+const Verb train_ranker_verb{
+    "train ranker", [](CLI::App& train, Job& job) {
+      CLI::App* verb = train.add_subcommand(
+          "ranker",
+          "Train a ranker, which scores how well a description fits a motion and is used to evaluate "
+          "DVGANs.\n"
+          "Writes ranker, checkpoint, log.csv and split.tsv to the --save folder. Ctrl-C saves and stops; "
+          "--resume\ncontinues as if the run had never stopped, and needs only --save.");
+      const auto args = std::make_shared<TrainRankerArgs>();
+      TrainRankerArgs& a = *args;
+      add_captioned_data_options(*verb, a);
+      add_options(*verb, fields_of(a.model), "Model");
+      add_options(*verb, fields_of(a.training), "Training");
+      add_run_options(*verb, a.run, "save/NAME-ranker, where NAME is that of FOLDER");
+      verb->callback([&job, args, verb] {
+        fill_in_procedural(*verb, args->procedural);
+        job = [args, verb] { return train_ranker(*args, *verb); };
+      });
+    }};
 
 }  // namespace
 }  // namespace motiongan::command

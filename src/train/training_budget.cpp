@@ -44,7 +44,8 @@ std::string described(const TrainingBudget& budget) {
 
 bool has_had(const fs::path& folder, const TrainingBudget& budget) {
   if (!fs::exists(mark_of(folder))) return false;
-  const auto mark = nlohmann::json::parse(motion::read_text(mark_of(folder), "record of a finished run"), nullptr, false);
+  const auto mark =
+      nlohmann::json::parse(motion::read_text(mark_of(folder), "record of a finished run"), nullptr, false);
   try {
     return within(budget.minutes, mark.at("minutes").get<double>()) &&
            within(static_cast<double>(budget.iterations),

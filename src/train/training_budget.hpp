@@ -3,8 +3,8 @@
 #pragma once
 #include <optional>
 
-#include "shared/options.hpp"
 #include "motiongan/train/run.hpp"
+#include "shared/options.hpp"
 
 namespace motiongan::command {
 

@@ -2,8 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <motiongan/core/random.hpp>
-#include <motiongan/ops/lstm.hpp>
 #include <motiongan/ops/conv1d.hpp>
+#include <motiongan/ops/lstm.hpp>
 #include <numeric>
 
 #include "../support/check_grads.hpp"

@@ -3,8 +3,8 @@
 
 #include "command.hpp"
 #include "motiongan/formats/bvh.hpp"
-#include "motiongan/motion/motion.hpp"
 #include "motiongan/formats/position_files.hpp"
+#include "motiongan/motion/motion.hpp"
 #include "motiongan/train/csv_log.hpp"
 
 using motiongan::motion::read_bvh;

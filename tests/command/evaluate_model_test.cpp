@@ -105,7 +105,8 @@ TEST_CASE("evaluate model: a generator compared with the clips that its run held
     refused("run", "--ranker is required");
     refused("run --ranker run", "holds no ranker.safetensors");
     refused("ranker --ranker ranker", "holds no generator.safetensors");
-    refused("run --ranker run/generator.safetensors", "expected one of cnn_ranker, rnn_ranker; motiongan train ranker makes one");
+    refused("run --ranker run/generator.safetensors",
+            "expected one of cnn_ranker, rnn_ranker; motiongan train ranker makes one");
     refused("run --ranker ranker --samples 1", "--samples");
     fs::create_directory("bare");
     fs::copy_file("run/generator.safetensors", "bare/model.safetensors");

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "command.hpp"
-#include "motiongan/models/dvgan.hpp"
 #include "motiongan/formats/bvh.hpp"
+#include "motiongan/models/dvgan.hpp"
 
 using namespace motiongan::motion;
 

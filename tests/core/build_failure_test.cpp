@@ -5,7 +5,7 @@ namespace motiongan::kernels {
 inline constexpr char broken[] = "\nkernel void softmax_rows(global real* x) {\n  x[0] = no_such_name;\n}\n";
 inline constexpr File broken_files[] = {
     {"prelude", prelude}, {"elementwise", elementwise}, {"softmax", broken}};
-}
+}  // namespace motiongan::kernels
 
 #define files broken_files  // replaces cl/softmax.cl by the text above, in this program only
 #include <motiongan/core/program.hpp>

@@ -139,8 +139,10 @@ TEST_CASE("errors of launches name kernel, file, sizes and shapes") {
   CHECK(says(unknown, "kernel no_such_kernel of cl/elementwise.cl"));
   CHECK(says(unknown, "CL_INVALID_KERNEL_NAME"));
 
-  const std::string extra = message_of(
-      [&] { context.launch("elementwise", "fill", LaunchGrid::items(15), x, std::size_t{15}, KernelReal{1}, KernelReal{2}); });
+  const std::string extra = message_of([&] {
+    context.launch("elementwise", "fill", LaunchGrid::items(15), x, std::size_t{15}, KernelReal{1},
+                   KernelReal{2});
+  });
   CHECK(says(extra, "argument 4 of kernel fill"));
 
   const std::size_t large = std::size_t{1} << 20;  // items in one work-group: more than any device supports
@@ -154,7 +156,8 @@ TEST_CASE("errors of launches name kernel, file, sizes and shapes") {
   CHECK(says(grid, "arguments [3, 5] [3, 5] 15 2.5 0"));
 
   CHECK(says(message_of([&] {
-               context.launch("elementwise", "fill", LaunchGrid::items(1), x, std::size_t{1} << 33, KernelReal{0});
+               context.launch("elementwise", "fill", LaunchGrid::items(1), x, std::size_t{1} << 33,
+                              KernelReal{0});
              }),
              "kernel fill: 8589934592 does not fit 32 bits"));
 
@@ -165,7 +168,8 @@ TEST_CASE("errors of launches name kernel, file, sizes and shapes") {
 TEST_CASE("an empty grid launches nothing") {
   const Context context;
   const std::size_t before = context.statistics().launches;
-  context.launch("elementwise", "fill", LaunchGrid::items(0), Tensor(context, {1}), std::size_t{0}, KernelReal{0});
+  context.launch("elementwise", "fill", LaunchGrid::items(0), Tensor(context, {1}), std::size_t{0},
+                 KernelReal{0});
   CHECK(context.statistics().launches == before);
 }
 

@@ -12,9 +12,7 @@ using motiongan::testing::says;
 namespace {
 
 enum class Colour { red, blue };
-constexpr NameTable<Colour, 2> enum_names(Colour) {
-  return {{{Colour::red, "red"}, {Colour::blue, "blue"}}};
-}
+constexpr NameTable<Colour, 2> enum_names(Colour) { return {{{Colour::red, "red"}, {Colour::blue, "blue"}}}; }
 
 struct Options {
   std::size_t steps = 3, taps = 3;
@@ -45,8 +43,8 @@ struct Options {
   }
 };
 
-const Options changed{4,     5,   0.25, false, true, Colour::blue, Colour::red, "y",
-                      "a/b", {"p", "q"}, {{7, 0.1}},  2};
+const Options changed{4,           5,   0.25,  false,      true,       Colour::blue,
+                      Colour::red, "y", "a/b", {"p", "q"}, {{7, 0.1}}, 2};
 
 std::string read(Options& options, const std::string& text) {
   return message_of([&] { io::fields_from_text(fields_of(options), text, "file"); });
@@ -83,7 +81,8 @@ TEST_CASE("older files: enums as numbers, members that did not exist yet") {
 
 TEST_CASE("what does not fit is refused by the member's name") {
   Options options;
-  CHECK(says(read(options, R"({"colour": "green"})"), "file: colour is \"green\", expected one of red, blue"));
+  CHECK(
+      says(read(options, R"({"colour": "green"})"), "file: colour is \"green\", expected one of red, blue"));
   CHECK(says(read(options, R"({"colour": 2})"), "\"colour\" is 2"));
   CHECK(says(read(options, R"({"steps": -1})"), "\"steps\" is -1"));
   CHECK(says(read(options, R"({"steps": 1.5})"), "\"steps\" is 1.5"));

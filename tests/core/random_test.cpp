@@ -44,7 +44,8 @@ TEST_CASE("known answers of Philox 4x32-10 (Salmon et al., their test vectors)")
 }
 
 TEST_CASE("uniform values and integers of the device equal the host's") {
-  const RandomKey key{.seed = 0x0123456789abcdefu, .stream = RandomStream::interpolation, .step = 70'001, .first_sample = 5};
+  const RandomKey key{
+      .seed = 0x0123456789abcdefu, .stream = RandomStream::interpolation, .step = 70'001, .first_sample = 5};
   const std::size_t n = 1000;
   const std::vector<float> uniform = random_uniform(floats(), key, n).to_host();
   const std::vector<cl_int> whole = random_integers(floats(), key, n, -16, 33).to_host();

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "motiongan/formats/bvh.hpp"
-#include "motiongan/data/dataset.hpp"
 #include "../support/walking_clips.hpp"
+#include "motiongan/data/dataset.hpp"
+#include "motiongan/formats/bvh.hpp"
 
 using namespace motiongan;
 using namespace motiongan::motion;

@@ -11,8 +11,8 @@
 #include <limits>
 #include <string>
 
-#include "motiongan/formats/bvh.hpp"
 #include "../support/walking_clips.hpp"
+#include "motiongan/formats/bvh.hpp"
 
 using namespace motiongan;
 using namespace motiongan::motion;

@@ -293,7 +293,7 @@ TEST_CASE("files are written atomically and read back, and errors name the path"
   CHECK(read_bvh(folder / "walk 1.bvh").channels == again.channels);  // the old file is unchanged
   CHECK_THROWS_WITH_AS(read_bvh(folder / "none.bvh"), doctest::Contains("does not exist"), Error);
   CHECK_THROWS_WITH_AS(read_bvh(folder), doctest::Contains("is a folder"), Error);
-  CHECK_THROWS_WITH_AS(write_bvh(folder / "no" / "x.bvh", again), doctest::Contains("does its folder exist"),
+  CHECK_THROWS_WITH_AS(write_bvh(folder / "no" / "x.bvh", again), doctest::Contains("does the folder exist"),
                        Error);
   fs::remove_all(folder);
 }

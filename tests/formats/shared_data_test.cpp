@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "motiongan/formats/bvh.hpp"
 #include "motiongan/data/dataset.hpp"
+#include "motiongan/formats/bvh.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/motion/rotation.hpp"
 
@@ -92,7 +92,7 @@ TEST_CASE("real files survive reading, writing and conversion to rotations") {
   for (const char* folder : {"cmu/01", "cmu/49", "bandai-1"}) {
     if (!fs::is_directory(data / folder)) continue;
     std::size_t here = 0;
-    for (const fs::path& path : find_bvh_files(data / folder)) {
+    for (const fs::path& path : find_clip_files(data / folder)) {
       if (here++ == 5) break;
       const Clip clip = read_bvh(path);
       const Clip again = parse_bvh(format_bvh(clip), clip.id);

@@ -111,10 +111,12 @@ inline void add_gradients(Pairs& pairs, const File& file, const std::vector<Name
 
 /// Scores, penalty and loss of any critic, and their gradients; `judge` is passed to critic_loss().
 inline void add_critic(const File& file, const std::vector<NamedParameter>& parameters,
-                       const CriticFn& critic_pairs, const CriticFn& judge, Pairs& outputs, Pairs& gradients) {
+                       const CriticFn& critic_pairs, const CriticFn& judge, Pairs& outputs,
+                       Pairs& gradients) {
   const Context& context = parameters.front().value->context();
   const Tensor real = file.tensor(context, "in.real"), fake = file.tensor(context, "in.fake");
-  const CriticLoss loss = critic_loss(critic_pairs, judge, real, fake, file.tensor(context, "in.epsilon"), 10);
+  const CriticLoss loss =
+      critic_loss(critic_pairs, judge, real, fake, file.tensor(context, "in.epsilon"), 10);
   const std::size_t batch = real.dim(1);
   outputs.push_back(output(file, "out.real", slice(loss.scores, 0, 0, batch)));
   outputs.push_back(output(file, "out.fake", slice(loss.scores, 0, batch, batch)));

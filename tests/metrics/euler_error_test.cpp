@@ -127,8 +127,7 @@ TEST_CASE("errors per frame, compared with numpy; constant ground-truth angles d
   CHECK_THROWS_WITH_AS(euler_errors(a, motion::slice(b, 0, 3)), doctest::Contains("4 frames of 3 joints"),
                        Error);
   CHECK_THROWS_WITH_AS(euler_errors(a, b, 3), doctest::Contains("root joint 3"), Error);
-  CHECK_THROWS_WITH_AS(euler_errors(truth, prediction, 5), doctest::Contains("24 values in 5 frames"),
-                       Error);
+  CHECK_THROWS_WITH_AS(euler_errors(truth, prediction, 5), doctest::Contains("24 values in 5 frames"), Error);
   CHECK_THROWS_WITH_AS(euler_errors(truth, std::span(prediction).first(6), 4),
                        doctest::Contains("of the ground truth and 6"), Error);
 }

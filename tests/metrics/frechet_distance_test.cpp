@@ -77,7 +77,6 @@ TEST_CASE("sets that cannot be compared are rejected") {
   const std::vector<float> set{1, 2, 3, 4}, one{1, 2}, odd{1, 2, 3}, wrong{1, NAN, 2, 3};
   CHECK_THROWS_WITH_AS(frechet_distance(set, one, 2), doctest::Contains("the second set has 1 samples"),
                        Error);
-  CHECK_THROWS_WITH_AS(frechet_distance(odd, set, 2), doctest::Contains("the first set has 3 values"),
-                       Error);
+  CHECK_THROWS_WITH_AS(frechet_distance(odd, set, 2), doctest::Contains("the first set has 3 values"), Error);
   CHECK_THROWS_WITH_AS(frechet_distance(wrong, set, 2), doctest::Contains("finite"), Error);
 }

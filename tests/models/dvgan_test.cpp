@@ -165,7 +165,8 @@ TEST_CASE("the error for what only an RNN generator can do says what to use") {
     CHECK(says(text, "--generator rnn"));
   }
   CHECK(model.generate(caption, {.frames = model.format().frames}).size() == 1);
-  CHECK(says(message_of([] { made({.generator = GeneratorKind::rnn, .hidden = 8}).cnn(); }), "RNN generator"));
+  CHECK(
+      says(message_of([] { made({.generator = GeneratorKind::rnn, .hidden = 8}).cnn(); }), "RNN generator"));
 }
 
 TEST_CASE("invalid sizes are refused") {
@@ -183,7 +184,8 @@ TEST_CASE("files without this model are refused, naming the file and the problem
   CHECK(says(refusal([](auto& f) { f.metadata.clear(); }), "not a motiongan model"));
   CHECK(says(refusal([](auto& f) { f.metadata["motiongan_model"] = "ranker"; }), "\"ranker\""));
   CHECK(says(refusal([](auto& f) { f.metadata.erase("format"); }), "the model has no motion format"));
-  CHECK(says(refusal([](auto& f) { f.metadata["format"] = "{\"frames\": 8"; }), "the motion format: cannot be read"));
+  CHECK(says(refusal([](auto& f) { f.metadata["format"] = "{\"frames\": 8"; }),
+             "the motion format: cannot be read"));
   CHECK(says(
       refusal([](auto& f) { f.metadata["options"] = R"({"hidden": 16, "taps": 4, "final_cut": true})"; }),
       "taps is 4, expected 3 or 5"));

@@ -81,7 +81,8 @@ TEST_CASE("the default sizes are those of the papers") {
   const Context context;
   CHECK(PredictionModel(context, {dof, actions}, {.predictor = Predictor::lstm}).options().hidden == 256);
   for (const Predictor p : all_predictors) CHECK(enum_from<Predictor>(name_of(p), "predictor") == p);
-  CHECK(says(message_of([] { enum_from<Predictor>("gru", "predictor"); }), "expected one of lstm, seq2seq, erd, lstm_3lr"));
+  CHECK(says(message_of([] { enum_from<Predictor>("gru", "predictor"); }),
+             "expected one of lstm, seq2seq, erd, lstm_3lr"));
 }
 
 TEST_CASE("a rollout equals feeding back one pose at a time") {
@@ -142,7 +143,8 @@ TEST_CASE("a loaded model makes the same predictions") {
   const Scratch scratch;
   const Context context;
   for (const Predictor predictor : all_predictors) {
-    PredictionModel model(context, {dof, actions}, {.predictor = predictor, .hidden = 12, .labels = false, .seed = 7});
+    PredictionModel model(context, {dof, actions},
+                          {.predictor = predictor, .hidden = 12, .labels = false, .seed = 7});
     const fs::path path = scratch.path / name_of(predictor);
     model.save(path);
     const PredictionModel loaded = PredictionModel::load(context, path);
@@ -162,7 +164,8 @@ TEST_CASE("a loaded model makes the same predictions") {
   CHECK(says(refused("motiongan_model", "cnn_generator"), "expected one of predictor_lstm"));
   CHECK(says(refused("motiongan_model", "predictor_gru"), "a model called \"predictor_gru\""));
   CHECK(says(refused("options", "[]"), "cannot be read, expected a JSON object"));
-  CHECK(says(refused("options", R"({"hidden": 70000, "labels": true})"), "hidden is 70000, expected 0 to 65536"));
+  CHECK(says(refused("options", R"({"hidden": 70000, "labels": true})"),
+             "hidden is 70000, expected 0 to 65536"));
   CHECK(says(refused("options", R"({"hidden": 14, "labels": true})"), "encode.0.weight"));
   CHECK(says(refused("format", R"({"dof": 4, "actions": 2})"), "encode.0.weight"));
 }

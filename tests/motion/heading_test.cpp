@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "motiongan/data/dataset.hpp"
 #include "../support/walking_clips.hpp"
+#include "motiongan/data/dataset.hpp"
 
 using namespace motiongan;
 using namespace motiongan::motion;

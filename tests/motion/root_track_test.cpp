@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "motiongan/data/dataset.hpp"
 #include "../support/walking_clips.hpp"
+#include "motiongan/data/dataset.hpp"
 
 using namespace motiongan;
 using namespace motiongan::motion;

@@ -65,8 +65,8 @@ TEST_CASE("the error lists eight differences and counts the rest") {
   Skeleton long_one = body();
   for (int i = 0; i < 11; ++i) long_one.joints.push_back({"Tail" + std::to_string(i), 0, {}, {}, {}});
   const std::string text = message_of([&] { require_same_joints(body(), long_one, "the prior walk.bvh"); });
-  CHECK(says(text,
-             "the prior walk.bvh has a different skeleton (16 joints, expected 5): 'Tail0' is extra; "));
+  CHECK(
+      says(text, "the prior walk.bvh has a different skeleton (16 joints, expected 5): 'Tail0' is extra; "));
   CHECK(says(text, "'Tail7' is extra; and 3 more. Use motion"));
   CHECK(!says(text, "Tail8"));
 }

@@ -1,11 +1,11 @@
 // The attention networks: parameter names, derivatives, options.
 #include <doctest/doctest.h>
 
-#include <motiongan/nn/state_dict.hpp>
 #include <motiongan/networks/attention_classifier.hpp>
 #include <motiongan/networks/attention_critic.hpp>
 #include <motiongan/networks/attention_generator.hpp>
 #include <motiongan/networks/lstm_baseline.hpp>
+#include <motiongan/nn/state_dict.hpp>
 #include <motiongan/ops/cross_entropy.hpp>
 #include <motiongan/train/wgan_gp.hpp>
 

@@ -133,8 +133,7 @@ TEST_CASE("inputs of the wrong shape are rejected") {
   const auto message = [&](const Tensor& p, const Tensor& k, const Tensor& n) {
     return message_of([&] { rollout.step(p, k, n); });
   };
-  CHECK(message(prior(c, 8, 4, 5), y, z) ==
-        "AttentionRollout: prior [8, 4, 5], expected [frames, batch, 6]");
+  CHECK(message(prior(c, 8, 4, 5), y, z) == "AttentionRollout: prior [8, 4, 5], expected [frames, batch, 6]");
   CHECK(message(x, one_hot(c, 3), z) == "AttentionRollout: classes [3, 3], expected [4, 3]");
   CHECK(says(message(x, y, {}), "noise [], expected [4, 2]"));
   const AttentionGenerator quiet = generator(c, {.dof = 6, .classes = classes, .hidden = 16});

@@ -1,8 +1,8 @@
 // The CNN critic: parameter names, level weights, first and second derivatives.
 #include <doctest/doctest.h>
 
-#include <motiongan/nn/state_dict.hpp>
 #include <motiongan/networks/cnn_critic.hpp>
+#include <motiongan/nn/state_dict.hpp>
 #include <motiongan/train/wgan_gp.hpp>
 
 #include "../support/check_grads.hpp"

@@ -1,8 +1,8 @@
 // The CNN generator: parameter names, final cut, derivatives.
 #include <doctest/doctest.h>
 
-#include <motiongan/nn/state_dict.hpp>
 #include <motiongan/networks/cnn_generator.hpp>
+#include <motiongan/nn/state_dict.hpp>
 
 #include "../support/check_grads.hpp"
 
@@ -34,8 +34,8 @@ std::vector<std::string> listed(CnnGenerator& model) {
 std::vector<Var> all_noise(const Context& context, std::size_t levels, std::size_t batch) {
   std::vector<Var> z;
   for (std::size_t i = 0; i <= levels; ++i)
-    z.push_back(Var::constant(
-        random_normal(context, {.seed = 8, .stream = RandomStream::noise + i}, std::size_t{1} << i, batch, k)));
+    z.push_back(Var::constant(random_normal(context, {.seed = 8, .stream = RandomStream::noise + i},
+                                            std::size_t{1} << i, batch, k)));
   return z;
 }
 

@@ -2,8 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <map>
-#include <motiongan/nn/state_dict.hpp>
 #include <motiongan/networks/rnn_critic.hpp>
+#include <motiongan/nn/state_dict.hpp>
 #include <motiongan/train/wgan_gp.hpp>
 
 #include "../support/check_grads.hpp"

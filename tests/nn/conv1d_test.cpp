@@ -115,9 +115,11 @@ TEST_CASE("Linear applies to the last axis, whatever the others") {
 
 TEST_CASE("wrong sizes are rejected, with both shapes") {
   Initializer init(double_context(), 6);
-  CHECK_THROWS_WITH_AS(Conv1d(init, 4, 4, 2), "Conv1d: taps is 2, expected an odd number for same padding", Error);
+  CHECK_THROWS_WITH_AS(Conv1d(init, 4, 4, 2), "Conv1d: taps is 2, expected an odd number for same padding",
+                       Error);
   const Conv1d conv(init, 4, 4, 3);
-  CHECK_THROWS_WITH_AS(conv(random(2, 2, 5)), "conv1d: input [2, 2, 5] does not fit weights [3, 4, 4]", Error);
+  CHECK_THROWS_WITH_AS(conv(random(2, 2, 5)), "conv1d: input [2, 2, 5] does not fit weights [3, 4, 4]",
+                       Error);
 }
 
 TEST_CASE("numbers of frames that are powers of two") {

@@ -60,7 +60,8 @@ TEST_CASE("first, second and third derivatives") {
   check([](auto& v) { return square(attention_scores(v[0], v[1])); }, {a, c});
   check([](auto& v) { return square(attention_apply(v[0], v[1])); }, {map, c});
   check([](auto& v) { return square(attention_apply(v[0], v[1], true)); }, {map, a});
-  check([](auto& v) { return attention_apply(attention_map(v[0], v[1]), v[0]) * v[1]; }, {c, randn({5, 2, 4})});
+  check([](auto& v) { return attention_apply(attention_map(v[0], v[1]), v[0]) * v[1]; },
+        {c, randn({5, 2, 4})});
 }
 
 TEST_CASE("the layer's derivatives with respect to input and parameters") {

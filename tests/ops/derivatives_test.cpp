@@ -1,9 +1,9 @@
 // Every differentiable operation: first to third derivatives against central differences, in double.
 #include <doctest/doctest.h>
 
+#include <motiongan/ops/conv1d.hpp>
 #include <motiongan/ops/cross_entropy.hpp>
 #include <motiongan/ops/lstm.hpp>
-#include <motiongan/ops/conv1d.hpp>
 
 #include "../support/check_grads.hpp"
 
@@ -46,8 +46,7 @@ TEST_CASE("elementwise operations") {
 
 TEST_CASE("reductions and broadcasts") {
   const Input x = randn({4, 3, 5});
-  for (int axis : {0, 1, 2, -1})
-    check("sum", [=](auto& v) { return square(sum(v[0], axis, 0.5)); }, {x});
+  for (int axis : {0, 1, 2, -1}) check("sum", [=](auto& v) { return square(sum(v[0], axis, 0.5)); }, {x});
   check("sum_last", [](auto& v) { return square(sum(v[0], -1)); }, {x});
   check("mean", [](auto& v) { return square(mean(v[0])); }, {x});
   check(

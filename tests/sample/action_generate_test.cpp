@@ -67,8 +67,7 @@ TEST_CASE("schedules are parsed, and errors name the piece") {
 TEST_CASE("classes change on the scheduled frame; the prior comes first") {
   const ActionGan model(context(), data().format, {.hidden = 8});
   std::vector<ActionPrior> priors;
-  for (std::size_t i = 0; i < 3; ++i)
-    priors.push_back(data().prior(data().train[i]));
+  for (std::size_t i = 0; i < 3; ++i) priors.push_back(data().prior(data().train[i]));
   const ActionSchedule schedule{{2, 13}, {1, 20}};
   const std::vector<PositionClip> clips = model.generate(priors, schedule);
   REQUIRE(clips.size() == 3);
@@ -95,7 +94,8 @@ TEST_CASE("classes change on the scheduled frame; the prior comes first") {
   CHECK(bare.front().frames == 33);
   CHECK(std::equal(bare.front().positions.begin(), bare.front().positions.end(),
                    clips.front().positions.begin() + static_cast<std::ptrdiff_t>(8 * joints)));
-  CHECK_THROWS_WITH_AS(model.generate(priors, ActionSchedule{}), doctest::Contains("schedule has no frames"), Error);
+  CHECK_THROWS_WITH_AS(model.generate(priors, ActionSchedule{}), doctest::Contains("schedule has no frames"),
+                       Error);
 }
 
 TEST_CASE("a synthetic clip has the real one's prior, class and length") {

@@ -131,9 +131,9 @@ TEST_CASE("the first second is the model's and depends on noise and class") {
     CHECK(stepped(stream, a) != stepped(stream, other_class));
     CHECK((stepped(stream, a) != stepped(stream, other_sample)) == (kind.noise_dim > 0));
     const NoGrad values_only;
-    const Var made = model.forward(Var::constant(Tensor::from(context(), {8, 1, data().format.dof()}, p.poses)),
-                                Var::constant(one_hot(context(), std::vector<std::size_t>{0}, 3)),
-                                {.seed = 5, .first_sample = 3});
+    const Var made = model.forward(
+        Var::constant(Tensor::from(context(), {8, 1, data().format.dof()}, p.poses)),
+        Var::constant(one_hot(context(), std::vector<std::size_t>{0}, 3)), {.seed = 5, .first_sample = 3});
     const std::vector<float> expected = made.value().to_host(), got = stepped(stream, a);
     for (std::size_t i = 0; i < got.size(); ++i)
       CHECK(got[i] == doctest::Approx(expected[i]).epsilon(1e-4).scale(1));

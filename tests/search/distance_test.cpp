@@ -4,10 +4,10 @@
 #include <limits>
 #include <random>
 
-#include "motiongan/search/windows.hpp"
 #include "motiongan/data/dataset.hpp"
 #include "motiongan/data/dataset_build.hpp"
 #include "motiongan/procedural/procedural.hpp"
+#include "motiongan/search/windows.hpp"
 
 using namespace motiongan;
 using motion::RootRotation;
@@ -120,8 +120,7 @@ TEST_CASE("the device agrees with plain loops over frames, dimensions and shifts
   }
 }
 
-TEST_CASE(
-    "a clip that contains a hypothesis is found at its shift, whatever its position and heading") {
+TEST_CASE("a clip that contains a hypothesis is found at its shift, whatever its position and heading") {
   const Context context;
   for (const RootRotation rotation : {RootRotation::heading, RootRotation::expmap, RootRotation::velocity}) {
     const motion::MotionFormat format = format_of(16, rotation, true);

@@ -5,12 +5,12 @@
 #include <filesystem>
 #include <fstream>
 
-#include "motiongan/search/collection.hpp"
-#include "motiongan/search/ranking.hpp"
-#include "motiongan/formats/bvh.hpp"
 #include "motiongan/data/dataset.hpp"
 #include "motiongan/data/dataset_build.hpp"
+#include "motiongan/formats/bvh.hpp"
 #include "motiongan/procedural/procedural.hpp"
+#include "motiongan/search/collection.hpp"
+#include "motiongan/search/ranking.hpp"
 
 using namespace motiongan;
 namespace fs = std::filesystem;

@@ -1,7 +1,7 @@
 // A small data set of procedural motion.
 #pragma once
-#include <motiongan/models/dvgan.hpp>
 #include <motiongan/data/dataset.hpp>
+#include <motiongan/models/dvgan.hpp>
 #include <motiongan/procedural/procedural.hpp>
 
 #include "../support/messages.hpp"

@@ -228,7 +228,9 @@ TEST_CASE("whole runs write files, a log and a model that loads, for the baselin
   };
   CHECK(mean_of(60) < 0.8 * mean_of(0));
   CHECK(ActionGan::load(context, scratch.path / "lstm" / "generator.safetensors").is_baseline());
-  CHECK(says(message_of([&] { train(baseline, small_actions(), {.iterations = 2, .critic_steps = 1, .batch = 2}); }), "LSTM baseline"));
+  CHECK(says(
+      message_of([&] { train(baseline, small_actions(), {.iterations = 2, .critic_steps = 1, .batch = 2}); }),
+      "LSTM baseline"));
   CHECK(says(message_of([&] { train_baseline(model, small_actions(), options); }), "not the LSTM baseline"));
 }
 
@@ -256,7 +258,7 @@ TEST_CASE("invalid options are refused") {
   const Context context;
   CHECK(says(message_of([&] {
                ActionGan(context, small_actions().format,
-                            {.generator = ActionGenerator::lstm, .noise_dim = 3});
+                         {.generator = ActionGenerator::lstm, .noise_dim = 3});
              }),
              "takes no noise"));
 }

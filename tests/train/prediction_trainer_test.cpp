@@ -206,14 +206,20 @@ TEST_CASE("invalid data and options are refused by name") {
   CHECK(says(refused(small_data(), with([](auto& o) { o.batch = 0; })), "batch is 0, expected at least 1"));
   CHECK(says(refused(small_data(), with([](auto& o) { o.prefix = 75; })),
              "no sequence has 81 frames (the longest has 80)"));
-  CHECK(says(refused(small_data(), with([](auto& o) { o.iterations = 1U << 24U; })), "random numbers count 2^24 steps"));
-  CHECK(says(refused(small_data(), with([](auto& o) { o.adam.learning_rate = 0; })), "learning_rate is 0, expected above 0"));
-  CHECK(says(refused(small_data(), with([](auto& o) { o.sgd.learning_rate = -1; })), "sgd_learning_rate is -1, expected above 0"));
+  CHECK(says(refused(small_data(), with([](auto& o) { o.iterations = 1U << 24U; })),
+             "random numbers count 2^24 steps"));
+  CHECK(says(refused(small_data(), with([](auto& o) { o.adam.learning_rate = 0; })),
+             "learning_rate is 0, expected above 0"));
+  CHECK(says(refused(small_data(), with([](auto& o) { o.sgd.learning_rate = -1; })),
+             "sgd_learning_rate is -1, expected above 0"));
   CHECK(says(refused(small_data(), with([](auto& o) {
                        o.noise = {{5, 0.1}, {5, 0.2}};
                      })),
              "noise stage 2 (from iteration 5 on"));
-  CHECK(says(refused(small_data(), with([](auto& o) { o.noise = {{5, -0.1}}; })), "deviations be at least 0"));
+  CHECK(says(refused(small_data(), with([](auto& o) {
+                       o.noise = {{5, -0.1}};
+                     })),
+             "deviations be at least 0"));
   const auto data = [](auto change) {
     PredictionData changed = small_data();
     change(changed);

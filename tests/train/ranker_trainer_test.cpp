@@ -52,7 +52,9 @@ TEST_CASE("both rankers learn to distinguish actions") {
     const Recall before = evaluate_ranker(ranker, data).retrieval.recall;
     double first = 0, last = 0;
     RunOptions run;
-    run.report = [&](std::size_t i, std::span<const NamedLoss> l) { (i == 1 ? first : last) = loss_of(l, "loss"); };
+    run.report = [&](std::size_t i, std::span<const NamedLoss> l) {
+      (i == 1 ? first : last) = loss_of(l, "loss");
+    };
     train(ranker, data, {.iterations = 150, .batch = 16, .adam = {.learning_rate = 3e-3}}, run);
     CHECK(last < 0.5 * first);
     const RankerEvaluation after = evaluate_ranker(ranker, data);
@@ -151,6 +153,7 @@ TEST_CASE("invalid data and files are refused") {
   CHECK(says(message_of([&] { RankerTrainer(ranker, one, {}); }), "have the same description"));
   const fs::path file = fs::temp_directory_path() / "motiongan_not_a_ranker.safetensors";
   Dvgan(context, small_data().format, {.hidden = 8}).save(file);
-  CHECK(says(message_of([&] { Ranker::load(context, file); }), "expected one of cnn_ranker, rnn_ranker; motiongan train ranker makes one"));
+  CHECK(says(message_of([&] { Ranker::load(context, file); }),
+             "expected one of cnn_ranker, rnn_ranker; motiongan train ranker makes one"));
   fs::remove(file);
 }

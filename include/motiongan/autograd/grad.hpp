@@ -82,8 +82,8 @@ inline std::vector<Var> grad(const std::vector<Var>& outputs, const std::vector<
     const std::vector<Var> of_inputs = node->vjp(*node, g, needs);
     for (std::size_t i = 0; i < of_inputs.size(); ++i) {
       if (!needs[i] || of_inputs[i].empty()) continue;
-      require(of_inputs[i].shape() == node->inputs[i].shape(), "gradient of ", node->operation,
-              ", input ", i, ", has shape ", of_inputs[i].shape(), ", expected ", node->inputs[i].shape());
+      require(of_inputs[i].shape() == node->inputs[i].shape(), "gradient of ", node->operation, ", input ", i,
+              ", has shape ", of_inputs[i].shape(), ", expected ", node->inputs[i].shape());
       add(node->inputs[i].node().get(), of_inputs[i]);
     }
   }

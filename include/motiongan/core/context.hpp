@@ -198,7 +198,8 @@ class Context {
   /// std::size_t a cl_uint, a KernelReal a scalar of the context's precision. An empty grid launches nothing.
   /// Throws Error if the kernel does not build or an OpenCL call fails.
   template <class... Arguments>
-  void launch(const char* file, const char* name, const LaunchGrid& grid, const Arguments&... arguments) const {
+  void launch(const char* file, const char* name, const LaunchGrid& grid,
+              const Arguments&... arguments) const {
     if (grid.global[0] == 0 || grid.global[1] == 0 || grid.global[2] == 0) return;
     detail::KernelArguments to{state_->programs->kernel(file, name), state_->precision, name};
     (add_argument(to, arguments), ...);

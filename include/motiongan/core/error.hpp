@@ -35,8 +35,7 @@ class MessagePart {
   MessagePart(const std::vector<std::size_t>& list) : list_(&list), kind_(Kind::list) {}
   /// Any other type with operator<<.
   template <class T>
-    requires(!std::is_arithmetic_v<T> && !std::convertible_to<T, std::string_view>)
-  MessagePart(const T& value)
+  requires(!std::is_arithmetic_v<T> && !std::convertible_to<T, std::string_view>) MessagePart(const T& value)
       : other_{&value, [](std::ostream& out, const void* at) { out << *static_cast<const T*>(at); }},
         kind_(Kind::other) {}
 

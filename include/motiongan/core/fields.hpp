@@ -22,7 +22,8 @@ namespace motiongan {
 
 /// The names of an enum's values. A function `enum_names(E)` next to the enum returns its table:
 ///
-///     constexpr NameTable<Color, 2> enum_names(Color) { return {{{Color::red, "red"}, {Color::blue, "blue"}}}; }
+///     constexpr NameTable<Color, 2> enum_names(Color) { return {{{Color::red, "red"}, {Color::blue,
+///     "blue"}}}; }
 ///
 /// Older files store a value as its index in this table: append, never reorder.
 template <class E, std::size_t n>
@@ -70,14 +71,14 @@ struct Range {
 
 /// Name, help text and permitted values of a member of an options struct.
 struct FieldInfo {
-  std::string key;           ///< in files, e.g. "lambda_gp"
-  std::string help;          ///< one line, for --help and for docs/options.md
-  Range range = {};          ///< for numbers
-  std::string option = {};   ///< on the command line; empty: "--" and the key with dashes; "-": none
-  std::string type = {};     ///< value placeholder in --help; empty: from the member's type
-  std::string group = {};    ///< heading in --help; empty: the struct's
-  bool saved = true;         ///< whether it is written to files
-  bool may_change = false;   ///< whether a resumed run may change it
+  std::string key;          ///< in files, e.g. "lambda_gp"
+  std::string help;         ///< one line, for --help and for docs/options.md
+  Range range = {};         ///< for numbers
+  std::string option = {};  ///< on the command line; empty: "--" and the key with dashes; "-": none
+  std::string type = {};    ///< value placeholder in --help; empty: from the member's type
+  std::string group = {};   ///< heading in --help; empty: the struct's
+  bool saved = true;        ///< whether it is written to files
+  bool may_change = false;  ///< whether a resumed run may change it
   std::vector<std::size_t> choices = {};  ///< permitted whole numbers; empty: all in `range`
 };
 
@@ -98,8 +99,9 @@ struct EnumAccess {
 
 /// A member of an options struct with its description. Refers to the struct, which must outlive the field.
 struct Field {
-  using Access = std::variant<bool*, std::optional<bool>*, std::size_t*, double*, std::string*, std::filesystem::path*,
-                              std::vector<std::string>*, std::vector<ScheduleStage>*, EnumAccess>;
+  using Access =
+      std::variant<bool*, std::optional<bool>*, std::size_t*, double*, std::string*, std::filesystem::path*,
+                   std::vector<std::string>*, std::vector<ScheduleStage>*, EnumAccess>;
   FieldInfo info;
   Access access;
 
@@ -117,7 +119,9 @@ struct Field {
   std::string text() const {
     struct Print {
       std::string operator()(const bool* b) const { return *b ? "true" : "false"; }
-      std::string operator()(const std::optional<bool>* b) const { return !*b ? "auto" : **b ? "true" : "false"; }
+      std::string operator()(const std::optional<bool>* b) const {
+        return !*b ? "auto" : **b ? "true" : "false";
+      }
       std::string operator()(const std::size_t* n) const { return std::to_string(*n); }
       std::string operator()(const double* x) const { return concat(*x); }
       std::string operator()(const std::string* s) const { return '"' + *s + '"'; }
@@ -186,33 +190,34 @@ class FieldList {
   }
   /// An enum, by the names in its table.
   template <class E>
-    requires std::is_enum_v<E>
+  requires std::is_enum_v<E>
   void add(E& member, FieldInfo info) {
-    fields_.push_back({std::move(info), EnumAccess{&member,
-                                                   [](const void* at) -> std::string {
-                                                     return name_of(*static_cast<const E*>(at));
-                                                   },
-                                                   [](void* at, std::string_view name, std::string_view what) {
-                                                     *static_cast<E*>(at) = enum_from<E>(name, what);
-                                                   },
-                                                   names<E, false>()}});
+    fields_.push_back(
+        {std::move(info),
+         EnumAccess{&member,
+                    [](const void* at) -> std::string { return name_of(*static_cast<const E*>(at)); },
+                    [](void* at, std::string_view name, std::string_view what) {
+                      *static_cast<E*>(at) = enum_from<E>(name, what);
+                    },
+                    names<E, false>()}});
   }
   /// An optional enum; an empty one is called "auto".
   template <class E>
-    requires std::is_enum_v<E>
+  requires std::is_enum_v<E>
   void add(std::optional<E>& member, FieldInfo info) {
     using Optional = std::optional<E>;
-    fields_.push_back({std::move(info), EnumAccess{&member,
-                                                   [](const void* at) -> std::string {
-                                                     const auto& value = *static_cast<const Optional*>(at);
-                                                     return value ? name_of(*value) : "auto";
-                                                   },
-                                                   [](void* at, std::string_view name, std::string_view what) {
-                                                     auto& value = *static_cast<Optional*>(at);
-                                                     value.reset();
-                                                     if (name != "auto") value = enum_from<E>(name, what);
-                                                   },
-                                                   names<E, true>()}});
+    fields_.push_back(
+        {std::move(info), EnumAccess{&member,
+                                     [](const void* at) -> std::string {
+                                       const auto& value = *static_cast<const Optional*>(at);
+                                       return value ? name_of(*value) : "auto";
+                                     },
+                                     [](void* at, std::string_view name, std::string_view what) {
+                                       auto& value = *static_cast<Optional*>(at);
+                                       value.reset();
+                                       if (name != "auto") value = enum_from<E>(name, what);
+                                     },
+                                     names<E, true>()}});
   }
 
   std::vector<Field>::const_iterator begin() const { return fields_.begin(); }

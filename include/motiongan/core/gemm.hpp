@@ -13,6 +13,10 @@ namespace motiongan {
 enum class GemmEngine { automatic, native, clblast };
 
 namespace detail {
+inline const ElementwiseKernel leaky_relu_kernel("leaky_relu", 1, "v < 0 ? a * v : v");  // keeps a NaN
+}
+
+namespace detail {
 
 /// The value of MOTIONGAN_GEMM, read once.
 inline GemmEngine gemm_engine_wish() {
@@ -78,7 +82,7 @@ inline void gemm(const Context& context, const GemmCall& call, GemmEngine engine
   else
     detail::gemm_clblast(context, call);
   if (call.rectified.empty() || (native && !call.b_panels.empty())) return;  // nothing left to do
-  context.launch("elementwise", "leaky_relu",
+  context.launch("elementwise", detail::leaky_relu_kernel.name(),
                  LaunchGrid::items((call.m * call.n + context.vector_width() - 1) / context.vector_width()),
                  detail::At{call.c, call.c_offset}, detail::At{call.rectified, call.rectified_offset},
                  call.m * call.n, KernelReal{0}, KernelReal{0});

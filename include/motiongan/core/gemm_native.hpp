@@ -89,7 +89,8 @@ inline void launch_gemm(const Context& context, const GemmCall& g) {
   to.rows_per_group = narrow(split.rows), to.panels_per_group = narrow(split.panels);
   to.panels_at_once = narrow(split.panels_at_once);
   const std::size_t columns = 2 * context.vector_width() * split.panels;
-  const LaunchGrid grid = LaunchGrid::groups((g.n + columns - 1) / columns, (g.m + split.rows - 1) / split.rows, g.batch);
+  const LaunchGrid grid =
+      LaunchGrid::groups((g.n + columns - 1) / columns, (g.m + split.rows - 1) / split.rows, g.batch);
   if (!is_packed) {
     context.launch("gemm", "gemm", grid, buffer(g.a), buffer(g.b), g.c.buffer(), buffer(g.bias),
                    buffer(g.residual), to);
@@ -106,12 +107,12 @@ inline void launch_gemm(const Context& context, const GemmCall& g) {
 
 /// out[j][i] = x[i][j], each with its own leading dimension.
 inline void launch_transpose(const Context& context, const At& x, std::size_t ld, std::size_t rows,
-                        std::size_t columns, const At& out, std::size_t out_ld) {
+                             std::size_t columns, const At& out, std::size_t out_ld) {
   const auto pieces = [&](std::size_t n) {
     return (n + context.vector_width() - 1) / context.vector_width();
   };
-  context.launch("gemm", "transpose", LaunchGrid::items(pieces(rows) * pieces(columns)), x, ld, rows, columns, out,
-                 out_ld);
+  context.launch("gemm", "transpose", LaunchGrid::items(pieces(rows) * pieces(columns)), x, ld, rows, columns,
+                 out, out_ld);
 }
 
 /// A transposed A is read by columns, once per tile and panel. With long rows every element of a column lies

@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -13,6 +14,26 @@ namespace motiongan {
 
 /// Precision of a Context: f32 for training and sampling, f64 for gradient checks.
 enum class Precision { f32, f64 };
+
+/// A kernel that computes an expression of every element: of v and, with two inputs, of w; a and b are
+/// numbers of the launch. It is defined as an `inline const` object beside the operation that needs it, and
+/// compiled with cl/elementwise.cl.
+class ElementwiseKernel {
+ public:
+  ElementwiseKernel(const char* name, int inputs, const char* expression) : name_(name) {
+    all()[name] = concat(inputs == 1 ? "UNARY(" : "BINARY(", name, ", ", expression, ")\n");
+  }
+  const char* name() const { return name_; }
+
+  /// The source lines of all kernels, in the order of their names.
+  static std::map<std::string, std::string>& all() {
+    static std::map<std::string, std::string> lines;
+    return lines;
+  }
+
+ private:
+  const char* name_;
+};
 
 namespace detail {
 
@@ -66,7 +87,9 @@ class ProgramCache {
  private:
   cl_program program(const std::string& file) {
     if (const auto found = programs_.find(file); found != programs_.end()) return found->second.get();
-    const std::string text = kernel_source("prelude") + kernel_source(file);
+    std::string text = kernel_source("prelude") + kernel_source(file);
+    if (file == "elementwise")
+      for (const auto& [name, line] : ElementwiseKernel::all()) text += line;
     const char* source = text.c_str();
     cl_int code = CL_SUCCESS;
     ClProgram program(clCreateProgramWithSource(context_, 1, &source, nullptr, &code));

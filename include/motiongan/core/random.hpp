@@ -77,9 +77,9 @@ inline std::size_t random_below(const RandomKey& key, std::uint32_t sample, std:
 inline Tensor random_normal(const Context& context, const RandomKey& key, std::size_t frames,
                             std::size_t batch, std::size_t channels, const Indices& frame_of = {}) {
   Tensor out(context, {frames, batch, channels});
-  context.launch("random", "random_normal", LaunchGrid::items(frames * batch * ((channels + 63) / 64)), out, frames,
-                 batch, channels, key.seed_low(), key.seed_high(), static_cast<cl_uint>(key.stream), key.step,
-                 key.first_sample, key.first_frame,
+  context.launch("random", "random_normal", LaunchGrid::items(frames * batch * ((channels + 63) / 64)), out,
+                 frames, batch, channels, key.seed_low(), key.seed_high(), static_cast<cl_uint>(key.stream),
+                 key.step, key.first_sample, key.first_frame,
                  frame_of.empty() ? static_cast<cl_mem>(nullptr) : frame_of.buffer());
   return out;
 }
@@ -92,15 +92,16 @@ inline void fill_normal_each(const Tensor& out, RandomStream stream, std::int32_
   const std::size_t frames = out.dim(0), batch = out.dim(1), channels = out.dim(2);
   require(keys.size() >= 4 * batch, "fill_normal_each: keys has ", keys.size(),
           " elements, expected 4 for each of ", batch, " samples");
-  out.context().launch("random", "random_normal_each", LaunchGrid::items(frames * batch * ((channels + 63) / 64)),
-                       out, frames, batch, channels, static_cast<cl_uint>(stream), first_frame, keys);
+  out.context().launch("random", "random_normal_each",
+                       LaunchGrid::items(frames * batch * ((channels + 63) / 64)), out, frames, batch,
+                       channels, static_cast<cl_uint>(stream), first_frame, keys);
 }
 
 /// Uniform in (0, 1), one number per sample: [batch].
 inline Tensor random_uniform(const Context& context, const RandomKey& key, std::size_t batch) {
   Tensor out(context, {batch});
-  context.launch("random", "random_uniform", LaunchGrid::items(batch), out, batch, key.seed_low(), key.seed_high(),
-                 static_cast<cl_uint>(key.stream), key.step, key.first_sample);
+  context.launch("random", "random_uniform", LaunchGrid::items(batch), out, batch, key.seed_low(),
+                 key.seed_high(), static_cast<cl_uint>(key.stream), key.step, key.first_sample);
   return out;
 }
 
@@ -108,8 +109,8 @@ inline Tensor random_uniform(const Context& context, const RandomKey& key, std::
 inline Indices random_integers(const Context& context, const RandomKey& key, std::size_t batch, int low,
                                std::size_t count) {
   Indices out(context, batch);
-  context.launch("random", "random_integers", LaunchGrid::items(batch), out, batch, static_cast<cl_int>(low), count,
-                 key.seed_low(), key.seed_high(), static_cast<cl_uint>(key.stream), key.step,
+  context.launch("random", "random_integers", LaunchGrid::items(batch), out, batch, static_cast<cl_int>(low),
+                 count, key.seed_low(), key.seed_high(), static_cast<cl_uint>(key.stream), key.step,
                  key.first_sample);
   return out;
 }

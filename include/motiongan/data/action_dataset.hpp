@@ -9,9 +9,9 @@
 #include "motiongan/data/action_options.hpp"
 #include "motiongan/data/dataset.hpp"
 #include "motiongan/data/labelled_motion.hpp"
-#include "motiongan/motion/position_clip.hpp"
 #include "motiongan/data/position_format.hpp"
 #include "motiongan/formats/text_file.hpp"
+#include "motiongan/motion/position_clip.hpp"
 
 namespace motiongan::motion {
 
@@ -20,7 +20,7 @@ struct ActionPrior;
 /// One clip at the data set's rate.
 struct ActionClip {
   std::string id;
-  std::string subject;  ///< empty unless the options need subjects
+  std::string subject;    ///< empty unless the options need subjects
   std::size_t label = 0;  ///< index into format.classes
   std::size_t frames = 0;
   std::vector<float> poses;       ///< [frames, kept dof], normalised

@@ -14,8 +14,8 @@
 #include "motiongan/data/action_dataset.hpp"
 #include "motiongan/data/action_source.hpp"
 #include "motiongan/data/action_split.hpp"
-#include "motiongan/formats/bvh_writer.hpp"
 #include "motiongan/data/clip_source.hpp"
+#include "motiongan/formats/bvh_writer.hpp"
 #include "motiongan/motion/skeleton_match.hpp"
 
 namespace motiongan::motion {
@@ -75,8 +75,8 @@ inline std::vector<Chosen> choose(const std::vector<Source>& sources, const Acti
   std::string list;
   for (const std::string& label : all) list += (list.empty() ? "'" : ", '") + label + "'";
   for (const std::string& name : o.classes)
-    require(all.contains(name), "no clip has the class '", name, "'; the classes are: ",
-            list.empty() ? std::string("none") : list);
+    require(all.contains(name), "no clip has the class '", name,
+            "'; the classes are: ", list.empty() ? std::string("none") : list);
   require(!out.empty(), "none of ", sources.size(), " clips has a label",
           o.labels.empty() ? std::string() : " in " + o.labels.string(), "; the first clip is '",
           sources.front().name, "'");
@@ -132,9 +132,9 @@ inline std::vector<Loaded> load_all(const std::vector<Source>& sources, std::vec
     if (clips[i].root != root) load(i, root);
   });
   for (std::size_t i = 1; i < clips.size(); ++i)
-    require_same_joints(clips.front().clip.skeleton, clips[i].clip.skeleton,
-                        concat("clip '", clips[i].clip.id, "', compared with '", clips.front().clip.id,
-                               "',"));
+    require_same_joints(
+        clips.front().clip.skeleton, clips[i].clip.skeleton,
+        concat("clip '", clips[i].clip.id, "', compared with '", clips.front().clip.id, "',"));
   return clips;
 }
 
@@ -150,10 +150,9 @@ inline std::vector<bool> split(const std::vector<Chosen>& chosen, const ActionDa
   for (std::size_t i = 0; i < clips.size(); ++i)
     if (is_train[i]) trained[clips[i].label] = true;
   for (std::size_t c = 0; c < classes; ++c)
-    require(
-        trained[c], "the class '", data.format.classes[c],
-        "' has no training clip: all its clips are of test subjects; choose other test subjects, another "
-        "split seed or a larger train_share, or leave the class out");
+    require(trained[c], "the class '", data.format.classes[c],
+            "' has no training clip: all its clips are of test subjects; choose other test subjects, another "
+            "split seed or a larger train_share, or leave the class out");
   return is_train;
 }
 
@@ -219,7 +218,7 @@ inline ActionDataset ActionDataset::from_folder(const std::filesystem::path& fol
       !options.labels.empty() || options.folders || !options.pattern.empty(),
       "there are no labels: give a label file (lines of clip id <TAB> label), labels by folder, or a file "
       "name pattern such as *_{label}_*");
-  const std::vector<std::filesystem::path> files = detail::find_clip_files(folder_or_file, options);
+  const std::vector<std::filesystem::path> files = detail::clip_files(folder_or_file, options);
   const std::vector<std::string> ids = clip_ids(files, folder_or_file);
   std::vector<detail::Source> sources;
   for (std::size_t i = 0; i < files.size(); ++i) {

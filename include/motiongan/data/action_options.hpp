@@ -29,9 +29,9 @@ struct ActionDatasetOptions {
   std::vector<std::string> classes{};  ///< keep only clips of these; empty: all
 
   void list_fields(FieldList& list) {
-    list.add(labels, {.key = "labels",
-                      .help = "file of lines `clip id <TAB> label` [FOLDER/labels.tsv]",
-                      .type = "FILE"});
+    list.add(
+        labels,
+        {.key = "labels", .help = "file of lines `clip id <TAB> label` [FOLDER/labels.tsv]", .type = "FILE"});
     list.add(folders, {.key = "folders", .help = "a clip's label is its folder below FOLDER"});
     list.add(pattern, {.key = "pattern",
                        .help = "for file names without extension: {label}, {subject}, * and text, such as "
@@ -41,8 +41,9 @@ struct ActionDatasetOptions {
     list.add(bones, {.key = "bones",
                      .help = "lines `joint <TAB> parent` for CSV and NPY files [bones.tsv next to them]",
                      .type = "FILE"});
-    list.add(first_frame, {.key = "first_frame",
-                           .help = "auto: drop a T-pose that precedes the motion; keep; drop: the first frame"});
+    list.add(first_frame,
+             {.key = "first_frame",
+              .help = "auto: drop a T-pose that precedes the motion; keep; drop: the first frame"});
     list.add(by_subject, {.key = "by_subject",
                           .help = "all clips of a subject go to the same part (subject: by --pattern, else "
                                   "the name up to its first _)",

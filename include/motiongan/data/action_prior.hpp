@@ -8,26 +8,25 @@
 
 #include "motiongan/data/action_dataset.hpp"
 #include "motiongan/data/action_source.hpp"
-#include "motiongan/motion/position_clip.hpp"
 #include "motiongan/data/position_format.hpp"
+#include "motiongan/motion/position_clip.hpp"
 
 namespace motiongan {
 namespace motion {
 
 /// The T frames that precede generated motion, at the format's rate.
 struct ActionPrior {
-  std::string id;                         ///< id of the clip
-  std::size_t first_frame = 0;            ///< in the clip, at the format's rate
+  std::string id;                 ///< id of the clip
+  std::size_t first_frame = 0;    ///< in the clip, at the format's rate
   Skeleton skeleton;              ///< with the clip's own bone lengths
-  std::vector<float> poses;               ///< [T, dof], normalised
+  std::vector<float> poses;       ///< [T, dof], normalised
   std::vector<Vec3> positions;    ///< [T, joints], world space, in the clip's unit
   std::vector<RootTrack> places;  ///< [T], position and heading of the root
 };
 
 /// A BVH motion as a position clip at the format's rate, from the format's root joint down. Throws Error if
 /// the skeleton has no joint of that name.
-inline PositionClip clip_for(const Motion& motion, const PositionFormat& format,
-                                     const std::string& id) {
+inline PositionClip clip_for(const Motion& motion, const PositionFormat& format, const std::string& id) {
   const int root = motion.skeleton.find(format.skeleton().joints.front().name);
   require(root >= 0, "the clip ", id, " has no joint '", format.skeleton().joints.front().name,
           "', the root of the model's skeleton");

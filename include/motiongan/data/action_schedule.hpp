@@ -91,8 +91,7 @@ inline ActionSchedule parse_action_schedule(std::string_view text, const motion:
   }
   require(seconds <= 0 || frames_of(out) == detail::frames_in(seconds, format.rate, "the schedule"),
           "the schedule '", whole, "' lasts ", static_cast<double>(frames_of(out)) / format.rate,
-          " seconds, but ", seconds,
-          " were requested: omit the total, or the length of the last piece");
+          " seconds, but ", seconds, " were requested: omit the total, or the length of the last piece");
   return out;
 }
 

@@ -12,12 +12,13 @@
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/data/action_options.hpp"
-#include "motiongan/formats/bvh_reader.hpp"
 #include "motiongan/data/first_frame.hpp"
+#include "motiongan/formats/bvh_reader.hpp"
+#include "motiongan/formats/clip_files.hpp"
+#include "motiongan/formats/position_files.hpp"
 #include "motiongan/motion/kinematics.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/motion/position_clip.hpp"
-#include "motiongan/formats/position_files.hpp"
 
 namespace motiongan::motion {
 
@@ -88,12 +89,6 @@ inline Loaded load_positions(const PositionClip& clip, double rate) {
   return out;
 }
 
-inline std::string extension_of(const std::filesystem::path& file) {
-  std::string extension = file.extension().string();
-  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return extension;
-}
-
 inline Loaded load_file(const std::filesystem::path& file, const std::string& id,
                         const ActionDatasetOptions& o, int root) {
   if (extension_of(file) != ".bvh") {
@@ -108,32 +103,11 @@ inline Loaded load_file(const std::filesystem::path& file, const std::string& id
   return out;
 }
 
-/// All .bvh, .csv and .npy files in a folder and its subfolders, sorted, except the label file and the bone
-/// list; or the file itself. Throws Error if there are none.
-inline std::vector<std::filesystem::path> find_clip_files(const std::filesystem::path& where,
-                                                          const ActionDatasetOptions& options) {
-  namespace fs = std::filesystem;
-  std::error_code problem;
-  require(fs::exists(where, problem), where.string(),
-          " does not exist; give a BVH, CSV or NPY file or a folder of them");
-  if (!fs::is_directory(where, problem)) return {where};
-  std::vector<fs::path> out;
-  fs::recursive_directory_iterator entries(where, fs::directory_options::skip_permission_denied, problem);
-  for (; !problem && entries != fs::recursive_directory_iterator(); entries.increment(problem)) {
-    const fs::path& file = entries->path();
-    const std::string extension = extension_of(file);
-    std::error_code ignored;
-    const auto is = [&](const fs::path& other) {
-      return !other.empty() && fs::equivalent(file, other, ignored);
-    };
-    if ((extension == ".bvh" || extension == ".csv" || extension == ".npy") && !entries->is_directory() &&
-        !is(options.labels) && !is(options.bones))
-      out.push_back(file);
-  }
-  require(!problem, "folder ", where.string(), " cannot be read: ", problem.message());
-  require(!out.empty(), "folder ", where.string(), " and its subfolders have no .bvh, .csv or .npy file");
-  std::sort(out.begin(), out.end());
-  return out;
+/// The clips of a folder: all .bvh, .csv and .npy files but the label file and the bone list; or the file
+/// itself. Throws Error if there are none.
+inline std::vector<std::filesystem::path> clip_files(const std::filesystem::path& where,
+                                                     const ActionDatasetOptions& options) {
+  return find_clip_files(where, {".bvh", ".csv", ".npy"}, {options.labels, options.bones});
 }
 
 }  // namespace action_dataset_detail

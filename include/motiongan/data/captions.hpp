@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
+#include "motiongan/data/vocabulary.hpp"
 #include "motiongan/formats/tab_lines.hpp"
 #include "motiongan/formats/text_file.hpp"
-#include "motiongan/data/vocabulary.hpp"
 
 namespace motiongan::motion {
 

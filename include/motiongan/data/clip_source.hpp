@@ -16,9 +16,10 @@
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/data/dataset_options.hpp"
+#include "motiongan/data/pose.hpp"
+#include "motiongan/formats/clip_files.hpp"
 #include "motiongan/motion/kinematics.hpp"
 #include "motiongan/motion/motion.hpp"
-#include "motiongan/data/pose.hpp"
 #include "motiongan/motion/skeleton.hpp"
 
 namespace motiongan::motion {
@@ -94,63 +95,10 @@ inline EncodedClip encode_clip(Motion motion, const DatasetOptions& options, std
   const double target = rate * static_cast<double>(out.stride);
   if (std::abs(motion.rate / target - 1) > 1e-6) motion = resample(motion, target);
   out.frames = motion.frames;
-  out.poses = PoseLayout(out.skeleton, options.root_position, static_cast<std::size_t>(out.root),
-                         options.rotation())
-                  .encode(motion, out.stride);
+  out.poses =
+      PoseLayout(out.skeleton, options.root_position, static_cast<std::size_t>(out.root), options.rotation())
+          .encode(motion, out.stride);
   return out;
-}
-
-/// Throws Error unless both skeletons have the same joints, parents and channels; bone lengths may differ.
-inline void check_same_joints(const Skeleton& a, const std::string& a_name, const Skeleton& b,
-                              const std::string& b_name) {
-  for (std::size_t j = 0; j < std::min(a.size(), b.size()); ++j) {
-    const Joint &x = a.joints[j], &y = b.joints[j];
-    const char* what = x.name != y.name           ? "different names"
-                       : x.parent != y.parent     ? "different parents"
-                       : x.channels != y.channels ? "different channels"
-                                                  : nullptr;
-    require(what == nullptr, "clips '", a_name, "' and '", b_name, "' have different skeletons: joint ", j,
-            ", '", x.name, "' and '", y.name, "', has ", what ? what : "", "; a data set needs one skeleton");
-  }
-  require(
-      a.size() == b.size(), "clips '", a_name, "' and '", b_name, "' have different skeletons: ", a.size(),
-      " and ", b.size(), " joints, the first unmatched joint is '",
-      (a.size() > b.size() ? a : b).joints[std::min(a.size(), b.size()) % std::max(a.size(), b.size())].name,
-      "'; a data set needs one skeleton");
-}
-
-/// All BVH files in a folder and its subfolders, sorted; or the file itself. Throws Error if there are none.
-inline std::vector<std::filesystem::path> find_bvh_files(const std::filesystem::path& where) {
-  namespace fs = std::filesystem;
-  std::error_code problem;
-  require(fs::exists(where, problem), where.string(), " does not exist; give a BVH file or a folder of them");
-  if (!fs::is_directory(where, problem)) return {where};
-  std::vector<fs::path> out;
-  fs::recursive_directory_iterator entries(where, fs::directory_options::skip_permission_denied, problem);
-  for (; !problem && entries != fs::recursive_directory_iterator(); entries.increment(problem)) {
-    std::string extension = entries->path().extension().string();
-    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    if (extension == ".bvh" && !entries->is_directory()) out.push_back(entries->path());
-  }
-  require(!problem, "folder ", where.string(), " cannot be read: ", problem.message());
-  require(!out.empty(), "folder ", where.string(), " and its subfolders have no .bvh file");
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
-/// Ids of the files: file names without extension or, where two files share a name, paths below `folder`
-/// without extension (`01/walk`).
-inline std::vector<std::string> clip_ids(const std::vector<std::filesystem::path>& files,
-                                         const std::filesystem::path& folder) {
-  std::map<std::string, int> uses;
-  for (const auto& file : files) ++uses[file.stem().string()];
-  std::vector<std::string> ids;
-  for (const auto& file : files) {
-    const bool shared = uses[file.stem().string()] > 1;
-    auto path = file.lexically_relative(folder);
-    ids.push_back(shared ? path.replace_extension().generic_string() : file.stem().string());
-  }
-  return ids;
 }
 
 }  // namespace motiongan::motion

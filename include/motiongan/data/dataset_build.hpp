@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
-#include "motiongan/formats/bvh_reader.hpp"
 #include "motiongan/data/dataset.hpp"
 #include "motiongan/data/split.hpp"
+#include "motiongan/formats/bvh_reader.hpp"
 
 namespace motiongan::motion {
 
@@ -67,8 +67,9 @@ inline std::vector<Used> encode_all(const std::vector<ClipSource>& sources, Data
   data.stride = used.front().clip.stride;
   root = 0;
   for (const Used& u : used) {
-    check_same_joints(used.front().clip.skeleton, sources[used.front().source].id, u.clip.skeleton,
-                      sources[u.source].id);
+    require_same_channels(used.front().clip.skeleton, u.clip.skeleton,
+                          concat("clip '", sources[u.source].id, "'"),
+                          concat("clip '", sources[used.front().source].id, "'"));
     data.stride = std::min(data.stride, u.clip.stride);
     root = std::max(root, u.clip.root);  // clips in which nothing travels have root 0
   }
@@ -249,7 +250,7 @@ inline Dataset build(const std::vector<ClipSource>& sources, const DatasetOption
 }  // namespace dataset_detail
 
 inline Dataset Dataset::from_bvh(const std::filesystem::path& folder_or_file, const DatasetOptions& options) {
-  const std::vector<std::filesystem::path> files = find_bvh_files(folder_or_file);
+  const std::vector<std::filesystem::path> files = find_clip_files(folder_or_file);
   const std::vector<std::string> ids = clip_ids(files, folder_or_file);
   std::vector<std::size_t> dropped(files.size(), 0);
   std::vector<ClipSource> sources;

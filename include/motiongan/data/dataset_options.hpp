@@ -17,7 +17,7 @@ struct DatasetOptions {
   bool root_position = true;         ///< whether the root's position is part of a pose
   /// expmap as in the papers, velocity for long motion; not set: heading.
   std::optional<RootRotation> root_rotation = {};
-  double train_share = 0.67;                           ///< fraction of the clips; the rest is for testing
+  double train_share = 0.67;  ///< fraction of the clips; the rest is for testing
   std::uint64_t split_seed = 1;
   FirstFrame first_frame = FirstFrame::automatic;  ///< for BVH files
 
@@ -38,8 +38,9 @@ struct DatasetOptions {
                              .help = "heading: position and yaw, every motion starts facing the same way; "
                                      "velocity: steps and turns, for motion of any length; expmap: as the "
                                      "papers; auto: velocity for an RNN generator, else heading"});
-    list.add(first_frame, {.key = "first_frame",
-                           .help = "auto: drop a T-pose that precedes the motion; keep; drop: the first frame"});
+    list.add(first_frame,
+             {.key = "first_frame",
+              .help = "auto: drop a T-pose that precedes the motion; keep; drop: the first frame"});
     list.add(train_share, {.key = "train_share",
                            .help = "fraction of the clips to train on; the rest is held out for testing",
                            .range = Range::between(0, 1)});

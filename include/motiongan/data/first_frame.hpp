@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "motiongan/core/fields.hpp"
 #include "motiongan/core/error.hpp"
+#include "motiongan/core/fields.hpp"
 #include "motiongan/motion/skeleton.hpp"
 
 namespace motiongan::motion {

@@ -12,9 +12,9 @@
 #include "motiongan/core/error.hpp"
 #include "motiongan/data/normalizer.hpp"
 #include "motiongan/data/pose.hpp"
+#include "motiongan/data/vocabulary.hpp"
 #include "motiongan/motion/skeleton.hpp"
 #include "motiongan/motion/skeleton_match.hpp"
-#include "motiongan/data/vocabulary.hpp"
 
 namespace motiongan::motion {
 

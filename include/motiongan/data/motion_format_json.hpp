@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
-#include "motiongan/formats/bvh.hpp"
 #include "motiongan/data/motion_format.hpp"
+#include "motiongan/formats/bvh.hpp"
 #include "motiongan/io/fields_json.hpp"
 
 namespace motiongan::io {

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "motiongan/core/fields.hpp"
 #include "motiongan/core/error.hpp"
+#include "motiongan/core/fields.hpp"
 #include "motiongan/motion/heading.hpp"
 #include "motiongan/motion/kinematics.hpp"
 #include "motiongan/motion/root_track.hpp"
@@ -24,7 +24,9 @@ enum class RootRotation {
   velocity  ///< as heading, but yaw and the position's x and z as changes since the previous frame
 };
 constexpr NameTable<RootRotation, 3> enum_names(RootRotation) {
-  return {{{RootRotation::expmap, "expmap"}, {RootRotation::heading, "heading"}, {RootRotation::velocity, "velocity"}}};
+  return {{{RootRotation::expmap, "expmap"},
+           {RootRotation::heading, "heading"},
+           {RootRotation::velocity, "velocity"}}};
 }
 
 /// Layout of a pose vector: for joint j, values 3j .. 3j + 2 are the exponential map of its local rotation in

@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
-#include "motiongan/motion/kinematics.hpp"
 #include "motiongan/data/normalizer.hpp"
 #include "motiongan/data/position_layout.hpp"
+#include "motiongan/formats/text_file.hpp"
+#include "motiongan/motion/kinematics.hpp"
 #include "motiongan/motion/skeleton.hpp"
 #include "motiongan/motion/skeleton_match.hpp"
-#include "motiongan/formats/text_file.hpp"
 
 namespace motiongan::motion {
 

@@ -8,8 +8,8 @@
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/data/motion_format_json.hpp"
-#include "motiongan/formats/bvh.hpp"
 #include "motiongan/data/position_format.hpp"
+#include "motiongan/formats/bvh.hpp"
 
 namespace motiongan::io {
 

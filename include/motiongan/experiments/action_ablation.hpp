@@ -171,8 +171,7 @@ inline std::vector<AblationClaim> judge_claims(std::span<const AblationResult> r
        " degrees");
   less("closer to the ground-truth curve than the LSTM", "full", "lstm", &ActionMeasures::curve_error,
        " degrees");
-  less("skeleton loss: smaller bone-length error", "full", "no_skeleton",
-       &ActionMeasures::bone_error, "%");
+  less("skeleton loss: smaller bone-length error", "full", "no_skeleton", &ActionMeasures::bone_error, "%");
   less("blend loss: smaller jumps at the seams", "full", "no_blend", &ActionMeasures::seam_body,
        metres ? " mm" : "", metres ? 1000 : 1);
   if (const ActionMeasures* lstm = find("lstm")) {

@@ -47,8 +47,7 @@ struct AugmentationStudyRow {
 
 /// Converts synthetic clips of `model` to the format of `data`: its frame rate, normalisation and class
 /// labels. Throws Error if `data` lacks one of the classes.
-inline std::vector<motion::ActionClip> as_clips_of(const motion::ActionDataset& data,
-                                                   const ActionGan& model,
+inline std::vector<motion::ActionClip> as_clips_of(const motion::ActionDataset& data, const ActionGan& model,
                                                    std::span<const SyntheticClip> synthetic) {
   std::vector<motion::ActionClip> out;
   for (const SyntheticClip& s : synthetic) {

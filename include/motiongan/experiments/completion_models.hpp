@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "motiongan/data/dataset.hpp"
 #include "motiongan/experiments/completion_protocol.hpp"
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/models/prediction_model.hpp"
-#include "motiongan/data/dataset.hpp"
 #include "motiongan/train/prediction_windows.hpp"
 
 namespace motiongan {

@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
-#include "motiongan/metrics/euler_error.hpp"
+#include "motiongan/data/normalizer.hpp"
 #include "motiongan/experiments/numpy_random.hpp"
 #include "motiongan/formats/expmap_text.hpp"
-#include "motiongan/data/normalizer.hpp"
+#include "motiongan/metrics/euler_error.hpp"
 
 namespace motiongan {
 

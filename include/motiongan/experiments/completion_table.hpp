@@ -165,7 +165,8 @@ inline std::string completion_markdown(const CompletionTable& table, const std::
 inline nlohmann::json completion_json(const CompletionTable& table) {
   const auto list = [](std::span<const double> values) {
     nlohmann::json out = nlohmann::json::array();
-    for (const double value : values) out.push_back(std::isnan(value) ? nlohmann::json() : nlohmann::json(value));
+    for (const double value : values)
+      out.push_back(std::isnan(value) ? nlohmann::json() : nlohmann::json(value));
     return out;
   };
   nlohmann::json out, rows = nlohmann::json::array();

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "motiongan/metrics/mean_std.hpp"
 #include "motiongan/experiments/model_evaluation.hpp"
 #include "motiongan/experiments/paper_tables.hpp"
+#include "motiongan/metrics/mean_std.hpp"
 #include "motiongan/train/dvgan_trainer.hpp"
 
 namespace motiongan {
@@ -30,9 +30,7 @@ struct DvganVariant {
     return out;
   }
   /// "dense", "mod2" or "final"; empty for the RNN critic.
-  std::string_view validation_name() const {
-    return critic == CriticKind::rnn ? "" : name_of(validation);
-  }
+  std::string_view validation_name() const { return critic == CriticKind::rnn ? "" : name_of(validation); }
 
   /// `options` with this variant's generator and final cut.
   DvganOptions model(DvganOptions options) const {

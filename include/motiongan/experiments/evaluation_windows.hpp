@@ -25,9 +25,9 @@ struct EvaluationWindow {
 struct EvaluationWindows {
   std::size_t future = 0;  ///< real frames after each prior
   std::vector<EvaluationWindow> windows;
-  std::size_t clips = 0;               ///< number of test clips
-  std::size_t long_clips = 0;          ///< those with at least T + future frames; others give no window
-  std::vector<std::size_t> per_class;  ///< number of windows of each class
+  std::size_t clips = 0;                     ///< number of test clips
+  std::size_t long_clips = 0;                ///< those with at least T + future frames; others give no window
+  std::vector<std::size_t> per_class;        ///< number of windows of each class
   std::vector<std::size_t> clips_per_class;  ///< number of clips that they come from
 };
 
@@ -72,7 +72,8 @@ inline EvaluationWindows choose_windows(const motion::ActionDataset& data, std::
         const std::size_t i = clips[c][turn[c]++ % clips[c].size()];
         const std::size_t starts = data.test[i].frames - length + 1;
         if (taken[i].size() == starts) continue;
-        const RandomKey key{.seed = seed, .stream = RandomStream::windows, .step = static_cast<std::uint32_t>(c)};
+        const RandomKey key{
+            .seed = seed, .stream = RandomStream::windows, .step = static_cast<std::uint32_t>(c)};
         std::size_t start = random_below(key, static_cast<std::uint32_t>(turn[c]), starts);
         while (taken[i].contains(start)) start = (start + 1) % starts;
         out.clips_per_class[c] += taken[i].empty();

@@ -1,6 +1,7 @@
 // Evaluation of a text-conditioned generator against real motion: inception score and retrieval (Lin & Amer,
 // Table 2), FID, diversity, multimodality and motion quality.
 #pragma once
+#include "motiongan/data/descriptions.hpp"
 #include "motiongan/metrics/diversity.hpp"
 #include "motiongan/metrics/drift.hpp"
 #include "motiongan/metrics/frechet_distance.hpp"
@@ -9,7 +10,6 @@
 #include "motiongan/metrics/retrieval.hpp"
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/models/ranker.hpp"
-#include "motiongan/data/descriptions.hpp"
 
 namespace motiongan {
 
@@ -130,10 +130,9 @@ inline RealEvaluation evaluate_real(const Ranker& ranker, const motion::Dataset&
                                     const ModelEvaluationOptions& options = {}) {
   namespace detail = model_evaluation_detail;
   require(!data.test.empty(), "there are no test clips to evaluate on; lower the training share");
-  require(
-      options.descriptions > 0 && options.samples >= 2, "descriptions is ", options.descriptions,
-      " and samples is ", options.samples,
-      ", expected at least 1 and 2 (multimodality needs two motions of a description)");
+  require(options.descriptions > 0 && options.samples >= 2, "descriptions is ", options.descriptions,
+          " and samples is ", options.samples,
+          ", expected at least 1 and 2 (multimodality needs two motions of a description)");
   RealEvaluation out;
   out.descriptions = motion::distinct_descriptions(data.test).most_popular(options.descriptions);
   for (const auto& of : out.descriptions.of_clip) out.clips += of.empty() ? 0 : 1;
@@ -186,8 +185,8 @@ inline ModelEvaluation evaluate_model(const Dvgan& model, const Ranker& ranker, 
   namespace detail = model_evaluation_detail;
   const std::size_t count = real.descriptions.size() * options.samples;
   require(count > 0 && real.features.size() == count * ranker.options().hidden, "the real motion has ",
-          real.features.size(), " feature values, expected ", count, " motions x ",
-          ranker.options().hidden, "; call evaluate_real() with the same ranker and options");
+          real.features.size(), " feature values, expected ", count, " motions x ", ranker.options().hidden,
+          "; call evaluate_real() with the same ranker and options");
   std::vector<motion::Motion> motions;
   std::vector<std::vector<std::size_t>> right;
   for (std::size_t d = 0; d < real.descriptions.size(); ++d) {

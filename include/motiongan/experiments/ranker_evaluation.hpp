@@ -1,9 +1,9 @@
 // Evaluation of a ranker on held-out clips (Lin & Amer, Table 1).
 #pragma once
+#include "motiongan/data/descriptions.hpp"
 #include "motiongan/metrics/inception_score.hpp"
 #include "motiongan/metrics/retrieval.hpp"
 #include "motiongan/models/ranker.hpp"
-#include "motiongan/data/descriptions.hpp"
 
 namespace motiongan {
 

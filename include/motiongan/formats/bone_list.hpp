@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
+#include "motiongan/formats/tab_lines.hpp"
+#include "motiongan/formats/text_file.hpp"
 #include "motiongan/motion/kinematics.hpp"
 #include "motiongan/motion/rotation.hpp"
 #include "motiongan/motion/skeleton.hpp"
-#include "motiongan/formats/tab_lines.hpp"
-#include "motiongan/formats/text_file.hpp"
 
 namespace motiongan::motion {
 

@@ -11,8 +11,8 @@
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/formats/bvh_cursor.hpp"
-#include "motiongan/motion/skeleton.hpp"
 #include "motiongan/formats/text_file.hpp"
+#include "motiongan/motion/skeleton.hpp"
 
 namespace motiongan::motion {
 
@@ -145,8 +145,7 @@ inline Skeleton read_hierarchy(Cursor& in) {
     }
   }
   if (same_word(in.peek(), "ROOT"))
-    in.fail_at(in.place(),
-               "found a second ROOT, expected MOTION: split the file into one file per skeleton");
+    in.fail_at(in.place(), "found a second ROOT, expected MOTION: split the file into one file per skeleton");
   return skeleton;
 }
 

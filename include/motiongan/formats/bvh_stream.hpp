@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
-#include "motiongan/io/atomic_file.hpp"
 #include "motiongan/formats/bvh_writer.hpp"
+#include "motiongan/io/atomic_file.hpp"
 #include "motiongan/motion/motion.hpp"
 
 namespace motiongan::motion {

@@ -14,9 +14,9 @@
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/formats/bvh_reader.hpp"
+#include "motiongan/formats/text_file.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/motion/skeleton.hpp"
-#include "motiongan/formats/text_file.hpp"
 
 namespace motiongan::motion {
 
@@ -45,10 +45,9 @@ inline void check_name(const std::string& name) {
   const bool sound = !name.empty() && !is_blank(name.front()) && !is_blank(name.back()) &&
                      name.front() != '{' && name.back() != '{' && name.find('\n') == name.npos &&
                      name.find(" {") == name.npos && name.find("\t{") == name.npos;
-  require(
-      sound, "a joint called '", name,
-      "' cannot be written as BVH: a name must not be empty, contain a line break, begin or end with a "
-      "space, or have a brace at its start, at its end or after a space");
+  require(sound, "a joint called '", name,
+          "' cannot be written as BVH: a name must not be empty, contain a line break, begin or end with a "
+          "space, or have a brace at its start, at its end or after a space");
 }
 
 }  // namespace bvh_detail

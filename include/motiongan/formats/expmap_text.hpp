@@ -234,10 +234,9 @@ inline ExpmapCollection read_expmap_collection(const std::filesystem::path& fold
                                  trainable = expmap_detail::trainable_actions(folder, out.layout);
   require(!testable.empty(), folder.string(), " has no test files, expected ",
           cmu ? "test/walking/walking_1.txt or similar" : "S5/walking_1.txt and S5/walking_2.txt or similar");
-  require(
-      !trainable.empty(), folder.string(), " has no files to train on, expected ",
-      cmu ? "train/walking/walking_1.txt or similar"
-          : "S1/walking_1.txt or similar, of S1, S6, S7, S8, S9, S11");
+  require(!trainable.empty(), folder.string(), " has no files to train on, expected ",
+          cmu ? "train/walking/walking_1.txt or similar"
+              : "S1/walking_1.txt or similar, of S1, S6, S7, S8, S9, S11");
   out.actions = expmap_detail::chosen(selection.actions, testable, "test", folder);
   std::vector<std::string> trained =
       expmap_detail::chosen(selection.train_actions, trainable, "training", folder);

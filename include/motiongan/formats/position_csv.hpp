@@ -87,8 +87,7 @@ inline double rate_from_times(const std::vector<double>& times, const std::vecto
   for (std::size_t f = 0; f < times.size(); ++f)
     require(std::abs(times[f] - (times.front() + step * static_cast<double>(f))) <= 0.1 * step, name, ":",
             lines[f], ": the time is ", times[f], " s, expected ",
-            times.front() + step * static_cast<double>(f),
-            " s at a constant rate; resample the file");
+            times.front() + step * static_cast<double>(f), " s at a constant rate; resample the file");
   return rate_from_frame_time(step);
 }
 

@@ -6,10 +6,10 @@
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/formats/bone_list.hpp"
-#include "motiongan/motion/position_clip.hpp"
 #include "motiongan/formats/position_csv.hpp"
 #include "motiongan/formats/position_npy.hpp"
 #include "motiongan/formats/text_file.hpp"
+#include "motiongan/motion/position_clip.hpp"
 
 namespace motiongan::motion {
 

@@ -12,8 +12,8 @@
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/formats/bone_list.hpp"
-#include "motiongan/motion/position_clip.hpp"
 #include "motiongan/formats/position_csv.hpp"
+#include "motiongan/motion/position_clip.hpp"
 
 namespace motiongan::motion {
 

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "motiongan/core/error.hpp"
+#include "motiongan/io/atomic_file.hpp"
 
 namespace motiongan::motion {
 
@@ -31,26 +32,9 @@ inline std::string read_text(const std::filesystem::path& path, std::string_view
 /// Writes `text` next to `path` and renames it, so that `path` never holds a partial file. Throws Error if
 /// that fails.
 inline void write_text_atomically(const std::filesystem::path& path, std::string_view text) {
-  std::filesystem::path beside = path;
-  beside += ".tmp";
-  std::error_code problem;
-  {
-    std::ofstream out(beside, std::ios::binary | std::ios::trunc);
-    require(out.good(), "cannot write ", beside.string(), "; does its folder exist, and is it writable?");
-    out.write(text.data(), static_cast<std::streamsize>(text.size()));
-    out.flush();
-    if (!out.good()) {
-      out.close();
-      std::filesystem::remove(beside, problem);
-      throw Error("writing ", text.size(), " bytes to ", beside.string(), " failed; is the disk full?");
-    }
-  }
-  std::filesystem::rename(beside, path, problem);
-  if (problem) {
-    std::error_code ignored;
-    std::filesystem::remove(beside, ignored);
-    throw Error("cannot rename ", beside.string(), " to ", path.string(), ": ", problem.message());
-  }
+  io::AtomicFile file(path);
+  file.write(text);
+  file.commit(io::AtomicFile::Sync::no);  // one call for each of thousands of clips
 }
 
 /// Whether the bytes are well-formed UTF-8.

@@ -44,9 +44,12 @@ class AtomicFile {
   }
   void write(std::string_view text) { write(text.data(), text.size()); }
 
-  /// Flushes to disk and replaces `path`.
-  void commit() {
-    check(::fsync(file_) == 0, "flush");
+  /// Whether commit() waits until the file is on disk: for files whose loss matters after a power cut.
+  enum class Sync { no, yes };
+
+  /// Renames the file into place: from now on it is at `path`.
+  void commit(Sync sync = Sync::yes) {
+    if (sync == Sync::yes) check(::fsync(file_) == 0, "flush");
     const int file = std::exchange(file_, -1);
     const bool closed = ::close(file) == 0;
     const bool renamed = closed && ::rename(beside_.c_str(), path_.c_str()) == 0;
@@ -57,6 +60,7 @@ class AtomicFile {
       check(false, closed ? "rename into place" : "close");
     }
     // The rename is durable only once the folder is synced; if that fails, the file is still complete.
+    if (sync == Sync::no) return;
     const std::filesystem::path folder = path_.has_parent_path() ? path_.parent_path() : ".";
     const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (handle >= 0) {

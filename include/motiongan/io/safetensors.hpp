@@ -18,8 +18,8 @@
 #include <utility>
 #include <vector>
 
-#include "motiongan/core/error.hpp"
 #include "atomic_file.hpp"
+#include "motiongan/core/error.hpp"
 #include "safetensors_header.hpp"
 
 namespace motiongan::io {

@@ -76,7 +76,8 @@ inline std::vector<double> euler_errors(const motion::Motion& truth, const motio
                                         std::size_t root = 0) {
   const motion::Motion* const both[] = {&truth, &prediction};
   require(truth.frames == prediction.frames && truth.skeleton.size() == prediction.skeleton.size(),
-          "the ground truth has ", truth.frames, " frames of ", truth.skeleton.size(), " joints, the "
+          "the ground truth has ", truth.frames, " frames of ", truth.skeleton.size(),
+          " joints, the "
           "prediction ",
           prediction.frames, " of ", prediction.skeleton.size(), ", expected the same");
   require(std::abs(truth.rate - prediction.rate) <= 1e-6 * truth.rate, "the ground truth has ", truth.rate,

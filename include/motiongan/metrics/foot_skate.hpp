@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
+#include "motiongan/metrics/statistics_measure.hpp"
 #include "motiongan/motion/body_side.hpp"
 #include "motiongan/motion/kinematics.hpp"
-#include "motiongan/metrics/statistics_measure.hpp"
 
 namespace motiongan {
 
@@ -85,11 +85,10 @@ inline bool has_feet(const motion::Skeleton& skeleton) {
 /// the first foot, or else the first ankle. Throws Error, listing the joint names, if there are none.
 inline std::vector<std::size_t> find_feet(const motion::Skeleton& skeleton) {
   std::vector<std::size_t> feet = foot_skate_detail::feet_by_name(skeleton);
-  require(
-      !feet.empty(),
-      "no joint names contain a side and toe, foot or ankle (such as LeftToeBase, Toes_L); name the feet "
-      "yourself, two of: ",
-      foot_skate_detail::joint_names(skeleton));
+  require(!feet.empty(),
+          "no joint names contain a side and toe, foot or ankle (such as LeftToeBase, Toes_L); name the feet "
+          "yourself, two of: ",
+          foot_skate_detail::joint_names(skeleton));
   return feet;
 }
 

@@ -15,8 +15,8 @@ namespace motiongan {
 /// Lin & Amer report nats. `scores` is [n, K], `descriptions` K. Throws Error if the sizes do not fit or
 /// there is no sample.
 inline double inception_score(std::span<const float> scores, std::size_t descriptions) {
-  require(descriptions > 0 && !scores.empty() && scores.size() % descriptions == 0, "found ",
-          scores.size(), " scores over ", descriptions,
+  require(descriptions > 0 && !scores.empty() && scores.size() % descriptions == 0, "found ", scores.size(),
+          " scores over ", descriptions,
           " descriptions, expected one score per sample and description, and at least one sample");
   const std::size_t samples = scores.size() / descriptions;
   std::vector<double> mean(descriptions, 0), p(descriptions);

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
-#include "motiongan/motion/kinematics.hpp"
 #include "motiongan/data/pose.hpp"
+#include "motiongan/motion/kinematics.hpp"
 
 namespace motiongan::motion {
 

@@ -35,8 +35,9 @@ struct DvganOptions {
     list.add(generator, {.key = "generator",
                          .help = "cnn: a window at once, coarse to fine; rnn: frame by frame, for any length",
                          .saved = false});  // it is the kind of the file
-    list.add(final_cut, {.key = "final_cut",
-                         .help = "generate twice the frames and keep half of them [on for the CNN generator]"});
+    list.add(final_cut,
+             {.key = "final_cut",
+              .help = "generate twice the frames and keep half of them [on for the CNN generator]"});
     list.add(hidden, {.key = "hidden", .help = "width of the networks", .range = Range::between(1, 65536)});
     list.add(taps, {.key = "taps", .help = "taps of the convolutions: 3 or 5", .choices = {3, 5}});
   }

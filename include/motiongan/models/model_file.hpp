@@ -72,7 +72,8 @@ typename Model::Options model_options(const io::SafeTensors& file, const std::st
     Model::kind_of(options) = kind;
     known = true;
   }
-  require(known, where, ": holds a model called \"", found, "\", expected one of ", names, "; ", Model::made_by, " makes one");
+  require(known, where, ": holds a model called \"", found, "\", expected one of ", names, "; ",
+          Model::made_by, " makes one");
   const auto text = file.metadata.find("options");
   require(text != file.metadata.end(), where, ": the model has no \"options\" in its metadata");
   const FieldList fields = fields_of(options);

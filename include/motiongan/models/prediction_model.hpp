@@ -21,7 +21,10 @@ enum class Predictor {
   lstm_3lr  ///< three-layer LSTM (Fragkiadaki et al. 2015), likewise
 };
 constexpr NameTable<Predictor, 4> enum_names(Predictor) {
-  return {{{Predictor::lstm, "lstm"}, {Predictor::seq2seq, "seq2seq"}, {Predictor::erd, "erd"}, {Predictor::lstm_3lr, "lstm_3lr"}}};
+  return {{{Predictor::lstm, "lstm"},
+           {Predictor::seq2seq, "seq2seq"},
+           {Predictor::erd, "erd"},
+           {Predictor::lstm_3lr, "lstm_3lr"}}};
 }
 
 /// The hidden width in the predictor's paper.

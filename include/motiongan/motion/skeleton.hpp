@@ -29,9 +29,8 @@ struct Joint {
   std::string name;
   int parent = -1;  ///< index into Skeleton::joints, always smaller than the joint's own; -1 for the root
   Vec3 offset{};    ///< from the parent, in the parent's frame, in the file's unit
-  std::vector<Channel>
-      channels;  ///< in file order; rotations apply left to right: R = R1 * R2 * R3
-  std::optional<Vec3> end_site;  ///< offset of the End Site, if any
+  std::vector<Channel> channels;  ///< in file order; rotations apply left to right: R = R1 * R2 * R3
+  std::optional<Vec3> end_site;   ///< offset of the End Site, if any
 
   friend bool operator==(const Joint&, const Joint&) = default;
 };

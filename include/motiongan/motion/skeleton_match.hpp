@@ -64,19 +64,43 @@ inline std::vector<std::string> joint_differences(const Skeleton& expected, cons
   return out;
 }
 
-/// Throws Error, listing the first eight differences, unless both skeletons have the same joints. `what`
-/// names the owner of `other` in the message, such as "the prior walk.bvh".
-inline void require_same_joints(const Skeleton& expected, const Skeleton& other, const std::string& what) {
-  const std::vector<std::string> differences = joint_differences(expected, other);
-  if (differences.empty()) return;
+namespace detail {
+
+[[noreturn]] inline void throw_different(const std::vector<std::string>& differences,
+                                         const Skeleton& expected, const Skeleton& other,
+                                         const std::string& what, const std::string& advice) {
   constexpr std::size_t shown = 8;
   std::string list;
   for (std::size_t i = 0; i < std::min(differences.size(), shown); ++i)
     list += (i > 0 ? "; " : "") + differences[i];
   if (differences.size() > shown) list += concat("; and ", differences.size() - shown, " more");
   throw Error(what, " has a different skeleton (", other.size(), " joints, expected ", expected.size(),
-              "): ", list,
-              ". Use motion of the skeleton that the model was trained on; bone lengths may differ");
+              "): ", list, ". ", advice);
+}
+
+}  // namespace detail
+
+/// Throws Error, listing the first eight differences, unless both skeletons have the same joints. `what`
+/// names the owner of `other` in the message, such as "the prior walk.bvh".
+inline void require_same_joints(const Skeleton& expected, const Skeleton& other, const std::string& what) {
+  const std::vector<std::string> differences = joint_differences(expected, other);
+  if (!differences.empty())
+    detail::throw_different(
+        differences, expected, other, what,
+        "Use motion of the skeleton that the model was trained on; bone lengths may differ");
+}
+
+/// The same for two clips of a data set, whose joints must also have the same channels; `owner` is whose the
+/// expected skeleton is.
+inline void require_same_channels(const Skeleton& expected, const Skeleton& other, const std::string& what,
+                                  const std::string& owner) {
+  std::vector<std::string> differences = joint_differences(expected, other);
+  for (std::size_t j = 0; differences.empty() && j < expected.size(); ++j)
+    if (expected.joints[j].channels != other.joints[j].channels)
+      differences.push_back("'" + expected.joints[j].name + "' has different channels");
+  if (!differences.empty())
+    detail::throw_different(differences, expected, other, what,
+                            "A data set needs one skeleton, that of " + owner + "; bone lengths may differ");
 }
 
 }  // namespace motiongan::motion

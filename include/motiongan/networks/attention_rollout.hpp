@@ -1,6 +1,7 @@
 // Autoregressive rollout of the attention generator, without an autograd graph.
 #pragma once
 #include "motiongan/networks/attention_generator.hpp"
+#include "motiongan/ops/attention.hpp"
 
 namespace motiongan {
 
@@ -49,11 +50,7 @@ class AttentionRollout {
   Tensor step(const Tensor& prior, const Tensor& classes, const Tensor& noise = {}) {
     check(prior, classes, noise);
     reserve(prior.dim(0), prior.dim(1));
-    const std::size_t rows = frames_ * batch_, noise_count = noise.empty() ? 0 : options_.noise_dim;
-    context_.launch("attention", "rows_with_constants",
-                    LaunchGrid::items(rows * (detail::vectors(context_, options_.dof) + 1)), prior, classes,
-                    noise.empty() ? classes : noise, detail::At{rows_, batch_ * encode_.k}, rows, batch_,
-                    options_.dof, options_.classes, noise_count);
+    detail::rows_with_constants(prior, classes, noise, {rows_, batch_ * encode_.k});
     gemm(context_, encode_);
     gemm(context_, first_[0]);
     gemm(context_, second_[0]);
@@ -84,8 +81,8 @@ class AttentionRollout {
   }
 
   void check(const Tensor& prior, const Tensor& classes, const Tensor& noise) const {
-    require(prior.rank() == 3 && prior.dim(2) == options_.dof && prior.size() > 0,
-            "AttentionRollout: prior ", prior.shape(), ", expected [frames, batch, ", options_.dof, "]");
+    require(prior.rank() == 3 && prior.dim(2) == options_.dof && prior.size() > 0, "AttentionRollout: prior ",
+            prior.shape(), ", expected [frames, batch, ", options_.dof, "]");
     require(classes.shape() == Shape{prior.dim(1), options_.classes}, "AttentionRollout: classes ",
             classes.shape(), ", expected ", Shape{prior.dim(1), options_.classes});
     require(
@@ -103,8 +100,8 @@ class AttentionRollout {
     rows_ = padded(encode_.k);
     rectified_ = padded(hidden);
     between_ = padded(hidden);
-    state_ = Tensor(context_, {rows, hidden});
-    other_ = Tensor(context_, {rows, hidden});
+    state_ = Tensor(context_, {frames, batch, hidden});
+    other_ = Tensor(context_, {frames, batch, hidden});
     const auto place = [&](GemmCall& call, const Tensor& from, const Tensor& to, std::size_t to_first) {
       call.m = rows, call.a = from, call.c = to, call.c_offset = to_first;
       for (std::size_t s = 0; s < call.segments; ++s) call.a_offset[s] = s * batch * call.k;
@@ -122,7 +119,7 @@ class AttentionRollout {
     place(second_[0], between_, other_, 0);
     add(second_[0], state_);
     if (inner_ > 0) {
-      parts_to_ = Tensor(context_, {rows, 3 * inner_});
+      parts_to_ = Tensor(context_, {frames, batch, 3 * inner_});
       place(parts_, other_, parts_to_, 0);
       // A sample's frames are split into pieces, so that a small batch still keeps all cores busy.
       const std::size_t groups = 4 * context_.device().compute_units;
@@ -137,11 +134,8 @@ class AttentionRollout {
 
   void attend() {
     gemm(context_, parts_);
-    const std::size_t rows = (frames_ + pieces_ - 1) / pieces_;
-    context_.launch("attention", "attend_frames", LaunchGrid::groups(batch_, (frames_ + rows - 1) / rows), parts_to_,
-                    scratch_, other_, out_weight_, out_bias_, state_,
-                    detail::At{rectified_, batch_ * options_.hidden}, frames_, batch_, inner_,
-                    options_.hidden, rows);
+    detail::attend_frames(parts_to_, scratch_, other_, {out_weight_, out_bias_}, state_,
+                          {rectified_, batch_ * options_.hidden}, pieces_);
   }
 
   AttentionGeneratorOptions options_;

@@ -38,8 +38,9 @@ class CnnGenerator {
   /// First of the N frames that the final cut keeps of 2N, per sample: uniform in 0..N, both included. Empty
   /// without final cut.
   Indices cuts(const Context& context, const RandomKey& key, std::size_t batch) const {
-    return options_.final_cut ? random_integers(context, key.with(RandomStream::cut), batch, 0, options_.frames + 1)
-                              : Indices();
+    return options_.final_cut
+               ? random_integers(context, key.with(RandomStream::cut), batch, 0, options_.frames + 1)
+               : Indices();
   }
 
   /// Standard normal noise z_i [2^i, B, k] for every level, keyed by sample: a sample's noise does not depend
@@ -69,8 +70,7 @@ class CnnGenerator {
   /// level reduced by cut_noise()) and `cut` as returned by cuts(). Throws Error for another number of
   /// levels.
   Var operator()(const Sentences& text, const std::vector<Var>& z, const Indices& cut) const {
-    require(z.size() == levels_ + 1, "CnnGenerator: noise for ", z.size(), " levels, expected ",
-            levels_ + 1);
+    require(z.size() == levels_ + 1, "CnnGenerator: noise for ", z.size(), " levels, expected ", levels_ + 1);
     const Var h_txt = text_(text);
     Var h = plot_[0](h_txt, z[0]);
     if (levels_ == 0) return decode_(h);
@@ -116,13 +116,12 @@ class CnnGenerator {
     } else {
       inner = relu_of_sum(plot, r.conv1(h));
     }
-    const Var weight =
-        matmul(broadcast_to(decode, {options_.taps, dof, k}), r.conv2.weight);
+    const Var weight = matmul(broadcast_to(decode, {options_.taps, dof, k}), r.conv2.weight);
     const Var bias =
         decode_.bias +
         reshape(matmul(reshape(r.conv2.bias, {1, k}), reshape(decode, {dof, k}), false, true), {dof});
     return conv1d(inner, weight, offsets, options_.final_cut ? options_.frames : frames, false,
-                {.bias = bias, .residual = residual});
+                  {.bias = bias, .residual = residual});
   }
 
   CnnGeneratorOptions options_;

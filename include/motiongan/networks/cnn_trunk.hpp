@@ -53,7 +53,7 @@ class CnnTrunk {
         weight.dim(0) == 3
             ? conv_down(pairs, weight, r.conv1.bias, frames, {.relu = true})
             : relu(sum_pool(conv1d(h, weight, r.conv1.offsets(), frames, false, {.bias = r.conv1.bias}), 2,
-                              0.5));
+                            0.5));
     return r.conv2(inner, {.residual = down});
   }
 

@@ -39,9 +39,7 @@ class LstmBaseline {
     const Var weight = matmul(layer.weight_ih, frame_.weight);
     const Var bias = layer.bias_ih + layer.bias_hh +
                      reshape(matmul(reshape(frame_.bias, {1, k}), layer.weight_ih, false, true), {4 * k});
-    const auto gates = [&](const Var& x) {
-      return linear(x, weight, {.bias = bias});
-    };
+    const auto gates = [&](const Var& x) { return linear(x, weight, {.bias = bias}); };
     const Var zero = zeros(prior.context(), {batch, k});
     const Var states = lstm_layer(gates(with_constant_channels(prior, classes)), layer.weight_hh, zero, zero);
     const Var first_h = last_state(states, 0), first_c = last_state(states, 1);
@@ -53,8 +51,7 @@ class LstmBaseline {
       const Var recurrent = layer.weight_hh + matmul(by_pose, out_.weight);
       const Var fed = broadcast_to(out_.bias, {1, batch, dof});
       const Var each = gates(with_constant_channels(fed, classes));  // [1, B, 4k]
-      const Var all = lstm_layer(broadcast_to(each, {frames - 1, batch, 4 * k}),
-                                 recurrent, first_h, first_c);
+      const Var all = lstm_layer(broadcast_to(each, {frames - 1, batch, 4 * k}), recurrent, first_h, first_c);
       h = concatenate({h, hidden_states(all)}, 0);
     }
     return out_(h);

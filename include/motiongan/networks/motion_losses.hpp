@@ -14,8 +14,7 @@ class SkeletonLoss {
   /// has a length.
   SkeletonLoss(const Context& context, const motion::PositionFormat& format, bool vectors = false)
       : bones_(format.bones().size()), mean_length_(format.mean_bone_length()), vectors_(vectors) {
-    require(bones_ > 0,
-            "the skeleton has no bone of non-zero length; the skeleton loss needs at least one");
+    require(bones_ > 0, "the skeleton has no bone of non-zero length; the skeleton loss needs at least one");
     map_ = Var::constant(Tensor::from(context, {1, 3 * bones_, format.dof()}, format.bone_map()));
     shift_ = Var::constant(Tensor::from(context, {3 * bones_}, format.bone_shift()));
   }

@@ -44,14 +44,16 @@ class RnnGenerator {
   /// First of the N frames that the final cut keeps of 2N, per sample: uniform in 0..N, both included. Empty
   /// without final cut.
   Indices cuts(const Context& context, const RandomKey& key, std::size_t batch) const {
-    return options_.final_cut ? random_integers(context, key.with(RandomStream::cut), batch, 0, options_.frames + 1)
-                              : Indices();
+    return options_.final_cut
+               ? random_integers(context, key.with(RandomStream::cut), batch, 0, options_.frames + 1)
+               : Indices();
   }
 
   /// Standard normal noise z [frames, B, k], keyed by sample and frame: it does not depend on the batch or
   /// the length.
   Var noise(const Context& context, const RandomKey& key, std::size_t batch, std::size_t frames) const {
-    return Var::constant(random_normal(context, key.with(RandomStream::noise), frames, batch, options_.hidden));
+    return Var::constant(
+        random_normal(context, key.with(RandomStream::noise), frames, batch, options_.hidden));
   }
 
   /// The weights as rollout() takes them, with consecutive linear layers multiplied into one: `frame` with

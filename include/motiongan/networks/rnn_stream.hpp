@@ -113,8 +113,7 @@ class RnnStream {
   /// The motion's row in step()'s result; remove() moves the last row. Throws Error for an unknown id.
   std::size_t row_of(StreamId id) const {
     const auto found = row_of_.find(id);
-    require(found != row_of_.end(), "the stream has no motion with id ", id,
-            "; it may have been removed");
+    require(found != row_of_.end(), "the stream has no motion with id ", id, "; it may have been removed");
     return found->second;
   }
   StreamId id_of(std::size_t row) const { return ids_.at(row); }
@@ -129,9 +128,7 @@ class RnnStream {
       host_double_.resize(context_.precision() == Precision::f64 ? total : 0);
     }
     for (std::size_t f = 0; f < frames; ++f) {
-      context_.launch("layout", "copy_runs", LaunchGrid::items(batch * detail::vectors(context_, dof_)),
-                      detail::At{rows_, half_ * slab()}, width(), detail::At{made_, f * batch * dof_}, dof_,
-                      batch, dof_);
+      detail::copy_runs(rows_, half_ * slab(), width(), made_, f * batch * dof_, dof_, batch, dof_);
       advance();
     }
     if (context_.precision() == Precision::f64) {
@@ -161,8 +158,7 @@ class RnnStream {
   /// Sets `count` rows from `row` to their first pose [1, count, dof] and zero LSTM states.
   void begin(const Tensor& pose, std::size_t row, std::size_t count) {
     const auto clear = [&](const Tensor& t, std::size_t first, std::size_t run) {
-      context_.launch("elementwise", "fill", LaunchGrid::items(detail::vectors(context_, count * run)),
-                      detail::At{t, first + row * run}, count * run, KernelReal{0});
+      detail::fill(t.view(first + row * run, {count * run}), 0);
     };
     clear(rows_, 0, width());
     clear(rows_, slab(), width());
@@ -263,13 +259,11 @@ class RnnStream {
   /// The plots' contribution to the first layer's gates, for the next `ahead_` frames of all motions.
   void make_plots() {
     const std::size_t batch = size(), rows = ahead_ * batch;
-    context_.launch("random", "random_normal_each", LaunchGrid::items(rows * ((k_ + 63) / 64)), z_, ahead_, batch,
-                    k_, static_cast<cl_uint>(RandomStream::noise), static_cast<cl_int>(tick_ + 1), device_keys_);
+    fill_normal_each(z_.view(0, {ahead_, batch, k_}), RandomStream::noise,
+                     static_cast<std::int32_t>(tick_ + 1), device_keys_);
     noise_.m = plot_.m = rows;
     gemm(context_, noise_);
-    context_.launch("elementwise", "add_broadcast_relu",
-                    LaunchGrid::items(ahead_ * detail::vectors(context_, batch * k_)), hidden_, h_txt_, hidden_,
-                    std::size_t{1}, ahead_, batch * k_);
+    detail::add_broadcast_relu(hidden_, h_txt_, hidden_, 1, ahead_, batch * k_);
     gemm(context_, plot_);
     ready_ = ahead_;
   }

@@ -35,7 +35,7 @@ struct Conv1d {
   /// conv(x) + bias + extras.residual, then ReLU if extras.relu; extras.bias is ignored.
   Var operator()(const Var& x, const Conv1dEpilogue& extras = {}) const {
     return conv1d(x, weight, offsets(), x.dim(0), false,
-                {.bias = bias, .residual = extras.residual, .relu = extras.relu});
+                  {.bias = bias, .residual = extras.residual, .relu = extras.relu});
   }
 
   void list_parameters(ParameterList& list) {
@@ -53,7 +53,7 @@ inline Var conv_down(const Var& pairs, const Var& weight, const Var& bias, std::
   require(weight.dim(0) == 3, "conv_down: weight has ", weight.dim(0), " taps, expected 3");
   const int half = static_cast<int>(frames / 2);
   return conv1d(pairs, weight, {0, half + 1, 1}, frames / 2, false,
-              {.bias = bias, .residual = extras.residual, .relu = extras.relu});
+                {.bias = bias, .residual = extras.residual, .relu = extras.relu});
 }
 
 /// y = x W^T + b on the last axis, then ReLU if asked: [..., in] -> [..., out]. `weight` is [out, in], `bias`

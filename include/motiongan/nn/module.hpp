@@ -41,7 +41,8 @@ class Initializer {
 
   /// Standard normal.
   Var normal(std::size_t rows, std::size_t columns) {
-    return Var::leaf(random_normal(context_, {.seed = seed_, .stream = RandomStream::weights, .step = ++count_}, 1,
+    return Var::leaf(random_normal(context_,
+                                   {.seed = seed_, .stream = RandomStream::weights, .step = ++count_}, 1,
                                    rows, columns)
                          .reshape({rows, columns}));
   }

@@ -33,7 +33,8 @@ inline Shape file_shape(const NamedParameter& parameter) {
 /// The values of a device tensor with this parameter's layout (the parameter or its gradient), in file order.
 inline std::vector<double> to_file_order(const NamedParameter& parameter, const Tensor& tensor) {
   std::vector<double> values = tensor.to_host<double>();
-  return parameter.layout == ParameterLayout::convolution ? detail::move_taps(values, tensor.dim(0), true) : values;
+  return parameter.layout == ParameterLayout::convolution ? detail::move_taps(values, tensor.dim(0), true)
+                                                          : values;
 }
 
 /// Adds every parameter to `file` as `prefix` + its name, in the context's precision. Throws Error, naming
@@ -43,9 +44,10 @@ inline void save_parameters(const std::vector<NamedParameter>& parameters, SafeT
   for (const NamedParameter& p : parameters) {
     const std::vector<double> values = to_file_order(p, p.value->value());
     for (double v : values)
-      require(
-          std::isfinite(v), "the parameter \"", prefix + p.name, "\" holds ", v,
-          ": training diverged; nothing is saved, resume from the last file with a lower learning rate");
+      if (!std::isfinite(v))
+        throw DivergedError(
+            "the parameter \"", prefix + p.name, "\" holds ", v,
+            ": training diverged; nothing is saved, resume from the last file with a lower learning rate");
     file.tensors[prefix + p.name] =
         p.value->context().precision() == Precision::f64
             ? SafeTensor::of(file_shape(p), values)
@@ -70,7 +72,8 @@ inline void load_parameters(const std::vector<NamedParameter>& parameters, const
     for (double v : all.back())
       require(std::isfinite(v), where, ": the tensor \"", prefix + p.name, "\" holds ", v,
               "; the file is damaged or training diverged");
-    if (p.layout == ParameterLayout::convolution) all.back() = detail::move_taps(all.back(), p.value->dim(0), false);
+    if (p.layout == ParameterLayout::convolution)
+      all.back() = detail::move_taps(all.back(), p.value->dim(0), false);
   }
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     Tensor place = parameters[i].value->value();

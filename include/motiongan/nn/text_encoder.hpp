@@ -23,8 +23,8 @@ struct Sentences {
     for (std::size_t b = 0; b < batch; ++b) {
       length.push_back(static_cast<cl_int>(sentences[b].size()));
       for (std::size_t t = 0; t < sentences[b].size(); ++t) {
-        require(sentences[b][t] >= 0 && static_cast<std::size_t>(sentences[b][t]) < vocabulary,
-                "word id ", sentences[b][t], " is outside the vocabulary of ", vocabulary, " words");
+        require(sentences[b][t] >= 0 && static_cast<std::size_t>(sentences[b][t]) < vocabulary, "word id ",
+                sentences[b][t], " is outside the vocabulary of ", vocabulary, " words");
         grid[t * batch + b] = sentences[b][t];
       }
     }

@@ -36,7 +36,8 @@ inline Var attention_scores(const Var& a, const Var& c) {
 inline Var attention_apply(const Var& map, const Var& x, bool transposed) {
   require(map.value().rank() == 3 && x.value().rank() == 3 && map.dim(0) == x.dim(1) &&
               map.dim(transposed ? 1 : 2) == x.dim(0),
-          "attention_apply: a map ", map.shape(), transposed ? " (transposed)" : "", " over frames ", x.shape());
+          "attention_apply: a map ", map.shape(), transposed ? " (transposed)" : "", " over frames ",
+          x.shape());
   const std::size_t rows = map.dim(transposed ? 2 : 1), inner = x.dim(0), batch = x.dim(1),
                     channels = x.dim(2);
   GemmCall call{.m = rows, .n = channels, .k = inner, .a = map.value(), .b = x.value()};
@@ -50,7 +51,8 @@ inline Var attention_apply(const Var& map, const Var& x, bool transposed) {
                 [transposed](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
                   const Var &m = self.inputs[0], &frames = self.inputs[1];
                   Var by_map;
-                  if (needs[0]) by_map = transposed ? attention_scores(frames, g) : attention_scores(g, frames);
+                  if (needs[0])
+                    by_map = transposed ? attention_scores(frames, g) : attention_scores(g, frames);
                   return {by_map, needs[1] ? attention_apply(m, g, !transposed) : Var()};
                 });
 }
@@ -60,4 +62,35 @@ inline Var attention_apply(const Var& map, const Var& x, bool transposed) {
 /// [B, J, I].
 inline Var attention_map(const Var& query, const Var& key) { return softmax(attention_scores(key, query)); }
 
+namespace detail {
+
+/// Rows [T, B, dof + Y + n] at `out`: a prior [T, B, dof] with classes [B, Y] and, if not empty, noise [B, n]
+/// repeated on every frame.
+inline void rows_with_constants(const Tensor& prior, const Tensor& classes, const Tensor& noise,
+                                const At& out) {
+  const Context& context = prior.context();
+  const std::size_t batch = prior.dim(1), dof = prior.dim(2), rows = prior.dim(0) * batch;
+  context.launch("attention", "rows_with_constants", LaunchGrid::items(rows * (vectors(context, dof) + 1)),
+                 prior, classes, noise.empty() ? classes : noise, out, rows, batch, dof, classes.dim(1),
+                 noise.empty() ? std::size_t{0} : noise.dim(1));
+}
+
+/// The output projection of self-attention, gamma included: weight [inner, C], bias [C].
+struct AttentionOutput {
+  const Tensor &weight, &bias;
+};
+
+/// A layer of self-attention after its first product, in one kernel and without a graph: `all` [T, B, 3 *
+/// inner] holds query, key and value; out [T, B, C] = x [T, B, C] + attention, its ReLU goes to `rectified`.
+/// `scratch` is [pieces, B, T + inner]; a sample's frames are cut into `pieces`, to keep all cores busy.
+inline void attend_frames(const Tensor& all, const Tensor& scratch, const Tensor& x,
+                          const AttentionOutput& output, const Tensor& out, const At& rectified,
+                          std::size_t pieces) {
+  const std::size_t frames = x.dim(0), batch = x.dim(1), rows = (frames + pieces - 1) / pieces;
+  x.context().launch("attention", "attend_frames", LaunchGrid::groups(batch, (frames + rows - 1) / rows), all,
+                     scratch, x, output.weight, output.bias, out, rectified, frames, batch, all.dim(2) / 3,
+                     x.dim(2), rows);
+}
+
+}  // namespace detail
 }  // namespace motiongan

@@ -74,7 +74,7 @@ inline Tensor pack_taps(const Context& context, GemmCall call, std::size_t taps_
 }
 
 inline Tensor conv1d_value(const Tensor& x, const Tensor& w, const Offsets& offsets, std::size_t frames_out,
-                         bool transposed, const Epilogue& epilogue) {
+                           bool transposed, const Epilogue& epilogue) {
   const std::size_t frames_in = x.dim(0), in = x.shape().back(), rows = x.size() / frames_in / in;
   const std::size_t out = transposed ? w.dim(2) : w.dim(1), tap_size = w.dim(1) * w.dim(2);
   Shape shape = x.shape();
@@ -172,11 +172,11 @@ struct Conv1dEpilogue {
 /// is [taps, out, in] (op transposes) or, with `transposed`, [taps, in, out]; y is [frames_out, ..., out].
 /// Throws Error if the weights do not fit the taps or the input.
 inline Var conv1d(const Var& x, const Var& w, const Offsets& offsets, std::size_t frames_out,
-                bool transposed = false, const Conv1dEpilogue& extras = {}) {
+                  bool transposed = false, const Conv1dEpilogue& extras = {}) {
   require(w.value().rank() == 3 && w.dim(0) == offsets.size(), "conv1d: weights ", w.shape(), " for ",
           offsets.size(), " taps");
-  require(x.shape().back() == w.dim(transposed ? 1 : 2), "conv1d: input ", x.shape(), " does not fit weights ",
-          w.shape());
+  require(x.shape().back() == w.dim(transposed ? 1 : 2), "conv1d: input ", x.shape(),
+          " does not fit weights ", w.shape());
   detail::Epilogue epilogue;
   if (!extras.bias.empty()) epilogue.bias = extras.bias.value();
   if (!extras.residual.empty()) epilogue.residual = extras.residual.value();
@@ -190,7 +190,8 @@ inline Var conv1d(const Var& x, const Var& w, const Offsets& offsets, std::size_
                   Var by_x, by_w, by_bias;
                   if (needs[0]) by_x = conv1d(masked, wi, -offsets, xi.dim(0), !transposed);
                   if (needs[1])
-                    by_w = transposed ? conv1d_weight(xi, masked, -offsets) : conv1d_weight(masked, xi, offsets);
+                    by_w =
+                        transposed ? conv1d_weight(xi, masked, -offsets) : conv1d_weight(masked, xi, offsets);
                   if (needs[2])
                     by_bias = detail::sum_axis(masked, 1, masked.size() / masked.shape().back(),
                                                masked.shape().back(), 1, self.inputs[2].shape());

@@ -24,7 +24,8 @@ inline Var gru_rollout_composed(const Var& x_gates, const Var& each, const Var& 
                                 const GruRolloutWeights& w, std::size_t frames) {
   const std::size_t given = x_gates.dim(0), batch = x_gates.dim(1), k = w.recurrent.dim(1),
                     dof = w.diff.dim(0);
-  const Var h_bias = broadcast_to(w.recurrent_bias, {batch, 3 * k}), pose_bias = broadcast_to(w.diff_bias, {batch, dof});
+  const Var h_bias = broadcast_to(w.recurrent_bias, {batch, 3 * k}),
+            pose_bias = broadcast_to(w.diff_bias, {batch, dof});
   Var h = zeros(x_gates.context(), {batch, k}), a = last;
   std::vector<Var> motion;
   for (std::size_t t = 0; t + 1 < given + frames; ++t) {
@@ -72,8 +73,7 @@ inline GruTrace gru_rollout_forward(const Tensor& x_gates, const Tensor& each, c
   t.states = Tensor(context, {t.steps() + 1, t.batch, t.k});
   t.kept = Tensor(context, {keep ? t.steps() : 1, t.batch, 4 * t.k});
   t.poses = Tensor(context, {frames + 1, t.batch, t.dof});
-  const Tensor first = t.states.view(0, {t.batch, t.k});
-  context.launch("elementwise", "fill", vector_grid(first), first, first.size(), KernelReal{0});
+  fill(t.states.view(0, {t.batch, t.k}), 0);
   copy_tensor(last, t.poses.view(0, last.shape()));
   const Tensor s(context, {t.batch, 3 * t.k}), x(context, {t.batch, 3 * t.k});
   GemmCall recur = product_with(w.recurrent.value(), true, t.batch),
@@ -106,7 +106,7 @@ inline GruTrace gru_rollout_forward(const Tensor& x_gates, const Tensor& each, c
 /// Gradients with respect to x_gates, each, last, W_h, b_h, w.pose, Wd and bd, given the gradient g
 /// [frames, B, M] of the predicted poses.
 inline std::vector<Tensor> gru_rollout_backward(const GruTrace& t, const Node& self, const Tensor& g,
-                                             const Needs& needs) {
+                                                const Needs& needs) {
   const Context& context = g.context();
   const std::size_t steps = t.steps(), own = t.frames - 1;  // steps that read a predicted pose
   const Tensor poses(context, g.shape()), dx(context, {steps, t.batch, 3 * t.k}), ds(context, dx.shape()),
@@ -154,8 +154,8 @@ inline std::vector<Tensor> gru_rollout_backward(const GruTrace& t, const Node& s
   std::vector<Tensor> found(8);
   if (needs[0]) found[0] = dx.view(0, {t.given, t.batch, 3 * t.k});
   if (needs[1] && own > 0)
-    found[1] = sum_axis_value(dx.view(t.gates_at(t.given), {own, t.batch, 3 * t.k}), 1, own, t.batch * 3 * t.k,
-                              1, {t.batch, 3 * t.k});
+    found[1] = sum_axis_value(dx.view(t.gates_at(t.given), {own, t.batch, 3 * t.k}), 1, own,
+                              t.batch * 3 * t.k, 1, {t.batch, 3 * t.k});
   if (needs[2]) found[2] = poses.view(0, {t.batch, t.dof});
   if (needs[3]) found[3] = by_weight(ds, 0, t.states, 0, steps);
   if (needs[4]) found[4] = sum_of(ds, 3 * t.k);

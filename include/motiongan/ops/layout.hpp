@@ -60,8 +60,9 @@ inline Var pad(const Var& x, std::size_t axis, std::size_t before, std::size_t a
   shape[axis] += before + after;
   const std::size_t run = view.count * view.inner, out_run = shape[axis] * view.inner;
   Tensor value(x.context(), shape);
-  x.context().launch("layout", "pad_runs", LaunchGrid::items(view.outer * detail::vectors(x.context(), out_run)),
-                     x.value(), value, view.outer, run, out_run, before * view.inner);
+  x.context().launch("layout", "pad_runs",
+                     LaunchGrid::items(view.outer * detail::vectors(x.context(), out_run)), x.value(), value,
+                     view.outer, run, out_run, before * view.inner);
   return record("pad", {x}, std::move(value),
                 [=, count = view.count](const Node&, const Var& g, const Needs&) -> std::vector<Var> {
                   return {slice(g, axis, before, count)};
@@ -119,9 +120,10 @@ inline Var shift_frames(const Var& x, const Indices& offset, std::size_t frames_
   const std::size_t frames_in = x.dim(0), batch = x.dim(1), channels = x.dim(2);
   Tensor value(x.context(), {frames_out, batch, channels});
   x.context().launch("layout", "shift_frames",
-                     LaunchGrid::items(frames_out * batch * detail::vectors(x.context(), channels)), x.value(),
-                     offset, value, frames_in, frames_out, batch, channels, static_cast<cl_int>(shift.first),
-                     static_cast<cl_int>(shift.sign), KernelReal{shift.outside});
+                     LaunchGrid::items(frames_out * batch * detail::vectors(x.context(), channels)),
+                     x.value(), offset, value, frames_in, frames_out, batch, channels,
+                     static_cast<cl_int>(shift.first), static_cast<cl_int>(shift.sign),
+                     KernelReal{shift.outside});
   return record("shift_frames", {x}, std::move(value),
                 [=](const Node&, const Var& g, const Needs&) -> std::vector<Var> {
                   return {shift_frames(g, offset, frames_in, {.first = -shift.first, .sign = -shift.sign})};
@@ -152,8 +154,9 @@ inline Var pair_means_adjoint(const Var& g, std::size_t frames) {
   const std::size_t slab = g.size() / shape[0];
   shape[0] = frames;
   Tensor value(g.context(), shape);
-  g.context().launch("layout", "pair_means_adjoint", LaunchGrid::items(frames * detail::vectors(g.context(), slab)),
-                     g.value(), value, frames, slab);
+  g.context().launch("layout", "pair_means_adjoint",
+                     LaunchGrid::items(frames * detail::vectors(g.context(), slab)), g.value(), value, frames,
+                     slab);
   return record("pair_means_adjoint", {g}, std::move(value),
                 [](const Node&, const Var& u, const Needs&) -> std::vector<Var> { return {pair_means(u)}; });
 }
@@ -178,8 +181,9 @@ inline Var gather_rows(const Var& table, const Indices& index) {
 inline Var scatter_add_rows(const Var& x, const Indices& index, std::size_t rows) {
   const std::size_t channels = x.dim(1);
   Tensor value(x.context(), {rows, channels});
-  x.context().launch("layout", "scatter_add_rows", LaunchGrid::items(rows * detail::vectors(x.context(), channels)),
-                     x.value(), index, value, x.dim(0), rows, channels);
+  x.context().launch("layout", "scatter_add_rows",
+                     LaunchGrid::items(rows * detail::vectors(x.context(), channels)), x.value(), index,
+                     value, x.dim(0), rows, channels);
   return record(
       "scatter_add_rows", {x}, std::move(value),
       [=](const Node&, const Var& g, const Needs&) -> std::vector<Var> { return {gather_rows(g, index)}; });

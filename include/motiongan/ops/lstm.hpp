@@ -54,12 +54,13 @@ inline Var lstm_layer_composed(const Var& x_gates, const Var& w_hh, const Var& h
 /// differentiates it again. Initial states are constant and there are no `lengths`. Its first derivative is
 /// fused, higher ones are composed.
 inline Var lstm_layer_grad(const Var& g, const Var& x_gates, const Var& w_hh, const LstmPass& pass,
-                            bool only_h) {
+                           bool only_h) {
   const LstmGradients first = lstm_backward(pass, g.value(), {.keep_totals = true});
   return fused(
       "lstm_layer_grad", {g, x_gates, w_hh}, first.gates,
       [pass, only_h, totals = first.totals](const Node& self, const Tensor& u, const Needs& needs) {
-        const LstmDoubleBackward found = lstm_double_backward(pass, self.value, totals, u, needs[1], needs[2]);
+        const LstmDoubleBackward found =
+            lstm_double_backward(pass, self.value, totals, u, needs[1], needs[2]);
         return std::vector<Tensor>{
             only_h ? found.g.view(0, {pass.frames(), pass.batch(), pass.hidden()}) : found.g,
             needs[1] ? found.gates : Tensor(), needs[2] ? found.w_hh : Tensor()};
@@ -86,8 +87,7 @@ inline Var lstm_layer_fused(const Var& x_gates, const Var& w_hh, const Var& h_fi
       [pass](const Node&, const Tensor& g, const Needs& needs) {
         const LstmGradients found = lstm_backward(pass, g, {.h_first = needs[2]});
         return std::vector<Tensor>{
-            found.gates,
-            needs[1] ? weight_gradient(pass, found.gates, pass.states, pass.h_first) : Tensor(),
+            found.gates, needs[1] ? weight_gradient(pass, found.gates, pass.states, pass.h_first) : Tensor(),
             needs[2] ? found.h_first : Tensor(), needs[3] ? found.c_first : Tensor()};
       },
       [pass, only_h](const std::vector<Var>& v) {

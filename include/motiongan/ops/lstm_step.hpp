@@ -29,8 +29,8 @@ class LstmStepper {
     const std::size_t panels = 2 * vectors(context, k_), columns = 2 * context.vector_width();
     packed_ = Tensor(context, {panels, in_, columns});
     context.launch("gemm_packed", "gemm_pack_gates",
-                   LaunchGrid::groups(panels, (in_ + gemm_block(context) - 1) / gemm_block(context)), weight, in_,
-                   k_, packed_);
+                   LaunchGrid::groups(panels, (in_ + gemm_block(context) - 1) / gemm_block(context)), weight,
+                   in_, k_, packed_);
   }
 
   void step(const LstmStep& s) const {
@@ -54,8 +54,9 @@ class LstmStepper {
     else
       call.residual = s.extra.tensor, call.residual_offset = s.extra.first, call.residual_ld = 4 * k_;
     gemm(context, call);
-    context.launch("lstm", "lstm_cell", LaunchGrid::items(s.batch * vectors(context, k_)), s.gates, s.c_before, s.h,
-                   static_cast<cl_mem>(nullptr), std::size_t{0}, s.h, s.width, s.c, s.batch, k_);
+    context.launch("lstm", "lstm_cell", LaunchGrid::items(s.batch * vectors(context, k_)), s.gates,
+                   s.c_before, s.h, static_cast<cl_mem>(nullptr), std::size_t{0}, s.h, s.width, s.c, s.batch,
+                   k_);
   }
 
  private:

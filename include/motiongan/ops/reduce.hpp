@@ -16,7 +16,7 @@ inline std::size_t vectors(const Context& context, std::size_t n) {
 /// scale * sum over the middle axis: [outer, count, inner] -> [outer, inner]. The order of summation is
 /// fixed.
 inline Tensor sum_axis_value(const Tensor& x, std::size_t outer, std::size_t count, std::size_t inner,
-                               double scale, Shape shape) {
+                             double scale, Shape shape) {
   const Context& context = x.context();
   Tensor out(context, std::move(shape));
   if (inner == 1 && count > 1) {
@@ -29,28 +29,28 @@ inline Tensor sum_axis_value(const Tensor& x, std::size_t outer, std::size_t cou
   if (count > 2 * piece && outer * columns < enough_items) {
     const std::size_t pieces = (count + piece - 1) / piece;
     const Tensor partial(context, {outer, pieces, inner});
-    context.launch("reduce", "sum_axis", LaunchGrid::items(outer * pieces * columns), x, partial, outer, count,
-                   inner, piece, KernelReal{1});
-    context.launch("reduce", "sum_axis", LaunchGrid::items(outer * columns), partial, out, outer, pieces, inner,
-                   pieces, KernelReal{scale});
+    context.launch("reduce", "sum_axis", LaunchGrid::items(outer * pieces * columns), x, partial, outer,
+                   count, inner, piece, KernelReal{1});
+    context.launch("reduce", "sum_axis", LaunchGrid::items(outer * columns), partial, out, outer, pieces,
+                   inner, pieces, KernelReal{scale});
   } else {
-    context.launch("reduce", "sum_axis", LaunchGrid::items(outer * columns), x, out, outer, count, inner, count,
-                   KernelReal{scale});
+    context.launch("reduce", "sum_axis", LaunchGrid::items(outer * columns), x, out, outer, count, inner,
+                   count, KernelReal{scale});
   }
   return out;
 }
 
 /// scale * x repeated along a new middle axis: [outer, inner] -> [outer, count, inner].
 inline Tensor broadcast_axis_value(const Tensor& x, std::size_t outer, std::size_t count, std::size_t inner,
-                           double scale, Shape shape) {
+                                   double scale, Shape shape) {
   const Context& context = x.context();
   Tensor out(context, std::move(shape));
   if (inner == 1)
-    context.launch("reduce", "broadcast_rows", LaunchGrid::items(outer * vectors(context, count)), x, out, outer,
-                   count, KernelReal{scale});
+    context.launch("reduce", "broadcast_rows", LaunchGrid::items(outer * vectors(context, count)), x, out,
+                   outer, count, KernelReal{scale});
   else
-    context.launch("reduce", "broadcast_axis", LaunchGrid::items(outer * count * vectors(context, inner)), x, out, outer,
-                   count, inner, KernelReal{scale});
+    context.launch("reduce", "broadcast_axis", LaunchGrid::items(outer * count * vectors(context, inner)), x,
+                   out, outer, count, inner, KernelReal{scale});
   return out;
 }
 
@@ -74,8 +74,8 @@ inline Var sum_axis(const Var& x, std::size_t outer, std::size_t count, std::siz
 /// `shape`. Throws Error if the sizes do not fit.
 inline Var broadcast_axis(const Var& x, std::size_t outer, std::size_t count, std::size_t inner, double scale,
                           Shape shape) {
-  require(x.size() == outer * inner && element_count(shape) == outer * count * inner, "broadcast_axis: ",
-          x.shape(), " is not ", outer, " x ", inner, ", or does not give ", shape);
+  require(x.size() == outer * inner && element_count(shape) == outer * count * inner,
+          "broadcast_axis: ", x.shape(), " is not ", outer, " x ", inner, ", or does not give ", shape);
   Tensor value = broadcast_axis_value(x.value(), outer, count, inner, scale, std::move(shape));
   return record("broadcast", {x}, std::move(value),
                 [=](const Node& self, const Var& g, const Needs&) -> std::vector<Var> {
@@ -164,17 +164,25 @@ inline Var normalize_rows(const Var& x) {
   return x / detail::broadcast_axis(sqrt(sum(square(x), -1) + 1e-24), rows, n, 1, 1, {rows, n});
 }
 
+namespace detail {
+/// out[o, j, i] = relu(big[o, j, i] + small[o, i]), seen as [outer, count, inner]; out may be big.
+inline void add_broadcast_relu(const Tensor& big, const Tensor& small, const Tensor& out, std::size_t outer,
+                               std::size_t count, std::size_t inner) {
+  const Context& context = big.context();
+  context.launch("elementwise", "add_broadcast_relu",
+                 LaunchGrid::items(outer * count * vectors(context, inner)), big, small, out, outer, count,
+                 inner);
+}
+}  // namespace detail
+
 /// relu(big + small), with each frame of small added to `count` consecutive frames of big: [count*T, ...],
 /// [T, ...] -> [count*T, ...]. One pass instead of three. Throws Error if the shapes do not fit.
 inline Var relu_of_sum(const Var& big, const Var& small) {
   require(big.size() % small.size() == 0 && big.size() / big.dim(0) * small.dim(0) == small.size(),
           "relu_of_sum: shapes ", big.shape(), " and ", small.shape());
   const std::size_t outer = small.dim(0), count = big.dim(0) / outer, inner = small.size() / outer;
-  const Context& context = big.context();
-  Tensor value(context, big.shape());
-  context.launch("elementwise", "add_broadcast_relu",
-                 LaunchGrid::items(outer * count * detail::vectors(context, inner)), big.value(), small.value(),
-                 value, outer, count, inner);
+  Tensor value(big.context(), big.shape());
+  detail::add_broadcast_relu(big.value(), small.value(), value, outer, count, inner);
   return record("relu_of_sum", {big, small}, std::move(value),
                 [count](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
                   const Var masked = detail::leaky_relu_grad(g, self.value, 0);
@@ -187,11 +195,12 @@ inline Var softmax(const Var& x) {
   const std::size_t n = x.shape().back(), rows = x.size() / n;
   Tensor value(x.context(), x.shape());
   x.context().launch("softmax", "softmax_rows", LaunchGrid::items(rows), x.value(), value, rows, n);
-  return record("softmax", {x}, std::move(value),
-                [=](const Node& self, const Var& g, const Needs&) -> std::vector<Var> {
-                  const Var y = detail::itself(self);
-                  return {y * (g - detail::broadcast_axis(sum(g * y, -1), rows, n, 1, 1, self.value.shape()))};
-                });
+  return record(
+      "softmax", {x}, std::move(value),
+      [=](const Node& self, const Var& g, const Needs&) -> std::vector<Var> {
+        const Var y = detail::itself(self);
+        return {y * (g - detail::broadcast_axis(sum(g * y, -1), rows, n, 1, 1, self.value.shape()))};
+      });
 }
 
 /// Logarithm of the softmax over the last axis; finite even where the softmax underflows to 0.

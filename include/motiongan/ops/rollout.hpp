@@ -66,12 +66,9 @@ inline RolloutTrace rollout_forward(const Tensor& given, const Tensor& x_gates, 
                      Tensor(context, {keep ? frames - 1 : 1, batch, 4 * k}),
                      Tensor(context, {frames, batch, k}),
                      Tensor(context, {frames, batch, k})};
-  const auto clear = [&](const Tensor& t) {
-    context.launch("elementwise", "fill", vector_grid(t), t, t.size(), KernelReal{0});
-  };
-  clear(trace.rows.view(0, {2 * s.slab()}));  // the initial states
-  clear(trace.c0.view(0, {batch * k}));
-  clear(trace.c1.view(0, {batch * k}));
+  fill(trace.rows.view(0, {2 * s.slab()}), 0);  // the initial states
+  fill(trace.c0.view(0, {batch * k}), 0);
+  fill(trace.c1.view(0, {batch * k}), 0);
   copy_runs(given, 0, s.dof, trace.rows, 0, s.width(), s.given * batch, s.dof);
   const RolloutLayers layers(context, w);
   GemmCall move{.m = batch, .n = s.dof, .k = k, .a = trace.rows, .b = w.diff.value(), .c = trace.rows};
@@ -111,7 +108,7 @@ inline RolloutTrace rollout_forward(const Tensor& given, const Tensor& x_gates, 
 
 /// Gradients with respect to given, x_gates, W0, W1, b1, Wd and bd, given the motion's gradient g [N, B, M].
 inline std::vector<Tensor> rollout_backward(const RolloutTrace& trace, const Node& self, const Tensor& g,
-                                         const Needs& needs) {
+                                            const Needs& needs) {
   const Context& context = g.context();
   const RolloutShape& s = trace.shape;
   const std::size_t k = s.k, batch = s.batch, frames = s.frames;

@@ -23,6 +23,10 @@ struct AdamOptions {
   }
 };
 
+namespace detail {
+inline const ElementwiseKernel clamp_kernel("clamp_between", 1, "clamp(v, (realv)a, (realv)b)");
+}
+
 /// Adam with bias correction. Its state is the running means of the gradients and of their squares.
 class Adam : public Optimizer {
  public:
@@ -42,8 +46,8 @@ class Adam : public Optimizer {
   /// unless limit > 0.
   void clip(double limit) {
     require(limit > 0, "Adam: the clipping limit is ", limit, ", expected a number above 0");
-    context().launch("elementwise", "clamp_of", detail::vector_grid(values()), values(), values(),
-                     values().size(), KernelReal{-limit}, KernelReal{limit});
+    context().launch("elementwise", detail::clamp_kernel.name(), detail::vector_grid(values()), values(),
+                     values(), values().size(), KernelReal{-limit}, KernelReal{limit});
   }
 
   /// Running means of the gradients and of their squares, all parameters concatenated: [n].
@@ -56,8 +60,9 @@ class Adam : public Optimizer {
     const double step_size = options_.learning_rate / (1 - std::pow(options_.beta1, t)),
                  root = std::sqrt(1 - std::pow(options_.beta2, t));
     context().launch("adam", "adam", detail::vector_grid(values()), values(), gradients(), mean_, square_,
-                     values().size(), KernelReal{options_.beta1}, KernelReal{options_.beta2}, KernelReal{1 - options_.beta1},
-                     KernelReal{1 - options_.beta2}, KernelReal{step_size}, KernelReal{root}, KernelReal{options_.epsilon});
+                     values().size(), KernelReal{options_.beta1}, KernelReal{options_.beta2},
+                     KernelReal{1 - options_.beta1}, KernelReal{1 - options_.beta2}, KernelReal{step_size},
+                     KernelReal{root}, KernelReal{options_.epsilon});
   }
 
   AdamOptions options_;

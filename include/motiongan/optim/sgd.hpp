@@ -16,7 +16,8 @@ struct SgdOptions {
 
   void list_fields(FieldList& list) {
     list.add(learning_rate, {.key = "sgd_learning_rate", .help = "step size", .range = Range::above(0)});
-    list.add(decay, {.key = "decay", .help = "factor of the learning rate at each decay", .range = Range::above(0)});
+    list.add(decay,
+             {.key = "decay", .help = "factor of the learning rate at each decay", .range = Range::above(0)});
     list.add(decay_every, {.key = "decay_every", .help = "steps between two decays; 0: never"});
     list.add(clip_norm, {.key = "clip_norm",
                          .help = "largest norm of the gradient; 0: no limit",

@@ -34,9 +34,9 @@ struct ArmTarget {
 
 struct BodyTarget {
   double x = 0, z = 0;
-  double height = 96.5;                       ///< of the root; lowered if a leg would not reach its foot
-  double yaw = 0, pitch = 0, roll = 0;        ///< of the pelvis; to the left, forward, to the right
-  double bend = 0, side_bend = 0, twist = 0;  ///< of the spine over the pelvis; forward, right, left
+  double height = 96.5;                          ///< of the root; lowered if a leg would not reach its foot
+  double yaw = 0, pitch = 0, roll = 0;           ///< of the pelvis; to the left, forward, to the right
+  double bend = 0, side_bend = 0, twist = 0;     ///< of the spine over the pelvis; forward, right, left
   double nod = 0, head_tilt = 0, head_turn = 0;  ///< of the head over the chest; down, right, left
   std::array<FootTarget, 2> feet{};
   std::array<ArmTarget, 2> arms{};

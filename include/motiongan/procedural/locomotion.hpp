@@ -21,7 +21,7 @@ struct Gait {
   double duty = 0.62;                 ///< fraction of the period in which a foot stands
   double start = 0;                   ///< phase of the left foot at time 0
   double half_width = 8, toe_out = 7;
-  double behind = 5;  ///< distance of the foot behind the body in mid-stance, cm
+  double behind = 5;                 ///< distance of the foot behind the body in mid-stance, cm
   double lift = 5, lift_peak = 0.4;  ///< of the swinging foot, cm, and phase of the swing at its peak
   double push_off = 42, swing_heel = 58,
          strike = 18;   ///< heel rise at push-off and its maximum in the swing; toe rise

@@ -19,8 +19,7 @@ inline std::vector<motion::PositionClip> ActionGan::generate(const std::vector<A
                           .seed = options.seed,
                           .sample = options.first_sample + static_cast<std::uint32_t>(i)});
     clips.push_back({prior.id, prior.skeleton, format_.rate, 0, {}});
-    if (options.with_prior)
-      clips.back().frames = format_.frames, clips.back().positions = prior.positions;
+    if (options.with_prior) clips.back().frames = format_.frames, clips.back().positions = prior.positions;
   }
   const std::vector<ActionStream::Id> ids = stream.add(characters);
   for (const ActionPiece& piece : schedule) {

@@ -7,9 +7,9 @@
 #include <span>
 #include <string_view>
 
+#include "motiongan/data/action_prior.hpp"
 #include "motiongan/models/action_gan.hpp"
 #include "motiongan/networks/attention_rollout.hpp"
-#include "motiongan/data/action_prior.hpp"
 
 namespace motiongan {
 
@@ -103,8 +103,8 @@ class ActionStream {
   /// Throws Error if frames is above T.
   void step(std::size_t frames = 0) {
     if (frames == 0) frames = format_.frames;
-    require(frames <= format_.frames, "frames is ", frames, ", expected at most ",
-            format_.frames, ", the number the model makes per step");
+    require(frames <= format_.frames, "frames is ", frames, ", expected at most ", format_.frames,
+            ", the number the model makes per step");
     std::vector<Character*> batch;
     for (auto& entry : characters_) {
       batch.push_back(&entry.second);

@@ -1,7 +1,7 @@
 // Updates the search index of a folder: reads new and changed files, keeps the rest.
 #pragma once
-#include "motiongan/search/index.hpp"
 #include "motiongan/formats/bvh_reader.hpp"
+#include "motiongan/search/index.hpp"
 
 namespace motiongan {
 
@@ -107,7 +107,7 @@ inline SearchCollection open_search_collection(const std::filesystem::path& fold
                                                const motion::MotionFormat& format,
                                                const std::filesystem::path& file = {}) {
   namespace fs = std::filesystem;
-  const std::vector<fs::path> files = motion::find_bvh_files(folder);
+  const std::vector<fs::path> files = motion::find_clip_files(folder);
   const fs::path home = fs::is_directory(folder) ? folder : folder.parent_path();
   SearchCollection out{
       SearchIndex(format), file.empty() ? search_index_file(home, format) : file, 0, 0, 0, false, {}};

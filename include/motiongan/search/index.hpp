@@ -13,11 +13,11 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
-#include "motiongan/search/distance.hpp"
-#include "motiongan/data/motion_format_json.hpp"
-#include "motiongan/io/safetensors.hpp"
 #include "motiongan/data/clip_source.hpp"
 #include "motiongan/data/first_frame.hpp"
+#include "motiongan/data/motion_format_json.hpp"
+#include "motiongan/io/safetensors.hpp"
+#include "motiongan/search/distance.hpp"
 
 namespace motiongan {
 

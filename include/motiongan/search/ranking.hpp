@@ -26,8 +26,8 @@ struct SearchHit {
 
 struct SearchRanking {
   std::vector<SearchHit> hits;  ///< nearest first
-  double median = 0;  ///< median distance of all clips (or windows), for comparison
-  std::size_t windows = 0;  ///< number of windows compared
+  double median = 0;            ///< median distance of all clips (or windows), for comparison
+  std::size_t windows = 0;      ///< number of windows compared
 };
 
 struct SearchOptions {
@@ -105,9 +105,9 @@ inline SearchRanking rank(const SearchIndex& index, const std::vector<SearchWind
 
 /// Searches an index for the clips nearest to the hypotheses, normalised poses [N, dof] each, as made by
 /// Dvgan::generate_poses(). Distances are computed on the context's device. Throws Error without hypotheses.
-inline SearchRanking search(const Context& context, const SearchIndex& index,
-                            const std::vector<std::vector<float>>& hypotheses,
-                            const SearchOptions& options = {}) {
+inline SearchRanking rank_clips(const Context& context, const SearchIndex& index,
+                                const std::vector<std::vector<float>>& hypotheses,
+                                const SearchOptions& options = {}) {
   const std::vector<SearchWindow> windows = index.windows(search_hop(index.format(), options));
   const SearchWindows compared(context, index.format(), index.frames(), index.starts(windows),
                                {.keep_bytes = 0});

@@ -21,9 +21,8 @@ struct WindowDistances {
 };
 
 struct SearchWindowsOptions {
-  std::size_t chunk = 0;  ///< windows per batch; 0: as many as fit 16 MB of spectra
-  std::size_t keep_bytes = std::size_t{1}
-                           << 30;  ///< keep spectra for later queries if they fit in this
+  std::size_t chunk = 0;                          ///< windows per batch; 0: as many as fit 16 MB of spectra
+  std::size_t keep_bytes = std::size_t{1} << 30;  ///< keep spectra for later queries if they fit in this
 };
 
 /// The windows of a collection, prepared for queries on the device.
@@ -139,8 +138,8 @@ class SearchWindows {
                     chunk.own, count, format_.frames, reach(), dims, std::size_t{layout_.turned},
                     KernelReal{layout_.yaw_scale});
     const std::size_t pieces = (columns + context_.vector_width() - 1) / context_.vector_width();
-    context_.launch("search", "search_spectra", LaunchGrid::items(count * pieces), plain, chunk.starts, table_,
-                    chunk.spectra, count, format_.frames, columns, frequencies_);
+    context_.launch("search", "search_spectra", LaunchGrid::items(count * pieces), plain, chunk.starts,
+                    table_, chunk.spectra, count, format_.frames, columns, frequencies_);
     return chunk;
   }
 
@@ -216,10 +215,11 @@ class SearchWindows {
     product.a_batch_stride = chunk.windows * 2 * columns, product.b_batch_stride = 2 * columns * 2 * lanes;
     product.c_batch_stride = 2 * lanes;
     gemm(context_, product);
-    context_.launch("search", "search_nearest", LaunchGrid::items(chunk.windows * lanes / context_.vector_width()),
-                    products, chunk.own, chunk.track, chunk.starts, turns_, query.squares, query.track,
-                    query.sums, nearest, shifts, chunk.windows, format_.frames, frequencies_, reach(), lanes,
-                    format_.dof(), layout_.track.size(), std::size_t{layout_.turned});
+    context_.launch("search", "search_nearest",
+                    LaunchGrid::items(chunk.windows * lanes / context_.vector_width()), products, chunk.own,
+                    chunk.track, chunk.starts, turns_, query.squares, query.track, query.sums, nearest,
+                    shifts, chunk.windows, format_.frames, frequencies_, reach(), lanes, format_.dof(),
+                    layout_.track.size(), std::size_t{layout_.turned});
     const std::vector<float> distance = nearest.to_host<float>(), shift = shifts.to_host<float>();
     for (std::size_t w = 0; w < chunk.windows; ++w)
       for (std::size_t h = 0; h < query.hypotheses; ++h) {

@@ -1,12 +1,12 @@
 // Training of the attention WGAN-GP (Malek-Podjaski & Deligianni): critic, classifier and generator take
 // turns, the other networks frozen.
 #pragma once
+#include "motiongan/models/action_gan.hpp"
 #include "motiongan/networks/attention_classifier.hpp"
 #include "motiongan/networks/attention_critic.hpp"
-#include "motiongan/models/action_gan.hpp"
 #include "motiongan/networks/motion_losses.hpp"
-#include "motiongan/train/action_windows.hpp"
 #include "motiongan/optim/adam.hpp"
+#include "motiongan/train/action_windows.hpp"
 #include "motiongan/train/run.hpp"
 #include "motiongan/train/wgan_gp.hpp"
 
@@ -38,15 +38,13 @@ struct AttentionTrainOptions {
     const auto loss_weight = [&](double& member, const char* key, const char* help) {
       list.add(member, {.key = key, .help = help, .range = Range::at_least(0)});
     };
-    list.add(iterations, {.key = "iterations",
-                          .help = "how long to train",
-                          .range = Range::at_least(1),
-                          .saved = false});
+    list.add(iterations,
+             {.key = "iterations", .help = "how long to train", .range = Range::at_least(1), .saved = false});
     list.add(critic_steps,
              {.key = "critic_steps", .help = "critic steps in each iteration", .range = Range::at_least(1)});
-    list.add(generator_steps, {.key = "generator_steps",
-                               .help = "generator steps in each iteration",
-                               .range = Range::at_least(1)});
+    list.add(
+        generator_steps,
+        {.key = "generator_steps", .help = "generator steps in each iteration", .range = Range::at_least(1)});
     list.add(batch, {.key = "batch", .help = "windows in a step", .range = Range::at_least(1)});
     list.add(rollouts, {.key = "rollouts",
                         .help = "how many seconds in a row the generator makes, fed with its own output",
@@ -166,14 +164,16 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
       future = concatenate({prior, future}, 0);
     }
     const CriticFn critic = [&](const Var& x) { return score(x, classes); };
-    const CriticFn critic_of_pairs = [&](const Var& x) { return score(x, concatenate({classes, classes}, 0)); };
+    const CriticFn critic_of_pairs = [&](const Var& x) {
+      return score(x, concatenate({classes, classes}, 0));
+    };
     const CriticLoss loss =
         options_.weight_clip > 0
             ? critic_loss(critic_of_pairs, batch.motion, future.value())
-            : critic_loss(critic_of_pairs, critic, batch.motion, future.value(),
-                          random_uniform(model_.context(), key.with(RandomStream::interpolation),
-                                         options_.batch),
-                          options_.lambda_gp);
+            : critic_loss(
+                  critic_of_pairs, critic, batch.motion, future.value(),
+                  random_uniform(model_.context(), key.with(RandomStream::interpolation), options_.batch),
+                  options_.lambda_gp);
     critic_adam_.step(grad(loss.loss, critic_adam_.parameters()));
     if (options_.weight_clip > 0) critic_adam_.clip(options_.weight_clip);
     wasserstein_ = loss.wasserstein.detach();
@@ -280,7 +280,8 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
 inline RunResult train(ActionGan& model, const motion::ActionDataset& data,
                        const AttentionTrainOptions& options, const RunOptions& run = {}) {
   AttentionTrainer trainer(model, data, options);
-  return run_training(trainer, [&](const std::filesystem::path& path) { data.write_split(path); }, run);
+  return run_training(
+      trainer, [&](const std::filesystem::path& path) { data.write_split(path); }, run);
 }
 
 }  // namespace motiongan

@@ -1,8 +1,8 @@
 // Training of the LSTM baseline (Malek-Podjaski & Deligianni): MSE on the T frames that follow a prior.
 #pragma once
 #include "motiongan/models/action_gan.hpp"
-#include "motiongan/train/action_windows.hpp"
 #include "motiongan/optim/adam.hpp"
+#include "motiongan/train/action_windows.hpp"
 #include "motiongan/train/run.hpp"
 
 namespace motiongan {
@@ -19,10 +19,8 @@ struct BaselineTrainOptions {
   std::size_t steps() const { return 1; }
 
   void list_fields(FieldList& list) {
-    list.add(iterations, {.key = "iterations",
-                          .help = "how long to train",
-                          .range = Range::at_least(1),
-                          .saved = false});
+    list.add(iterations,
+             {.key = "iterations", .help = "how long to train", .range = Range::at_least(1), .saved = false});
     list.add(batch, {.key = "batch", .help = "windows in a step", .range = Range::at_least(1)});
     list.add(balanced, {.key = "balanced",
                         .help = "draw all classes with equal probability, however many clips they have"});
@@ -52,9 +50,7 @@ class BaselineTrainer : public ModelTrainer<ActionGan, BaselineTrainOptions, Bas
     detail::require_same_format(data.format, model.format());
   }
 
-  std::vector<TrainedPart> parts() override {
-    return {{"generator", named_parameters(model_), &adam_}};
-  }
+  std::vector<TrainedPart> parts() override { return {{"generator", named_parameters(model_), &adam_}}; }
 
   /// One update.
   void iterate() override {
@@ -82,7 +78,8 @@ class BaselineTrainer : public ModelTrainer<ActionGan, BaselineTrainOptions, Bas
 inline RunResult train_baseline(ActionGan& model, const motion::ActionDataset& data,
                                 const BaselineTrainOptions& options, const RunOptions& run = {}) {
   BaselineTrainer trainer(model, data, options);
-  return run_training(trainer, [&](const std::filesystem::path& path) { data.write_split(path); }, run);
+  return run_training(
+      trainer, [&](const std::filesystem::path& path) { data.write_split(path); }, run);
 }
 
 }  // namespace motiongan

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
+#include "motiongan/io/atomic_file.hpp"
 
 namespace motiongan {
 
@@ -125,7 +126,9 @@ class CsvLog {
       kept += lines[i] + "\n";
       last_ = static_cast<std::uint64_t>(iteration);
     }
-    replace_with(kept);
+    io::AtomicFile file(path_);
+    file.write(kept);
+    file.commit();
     out_.open(path_, std::ios::binary | std::ios::app);
     require(out_.is_open(), "cannot append to the log ", path_.string(), "; check that it is writable");
   }
@@ -154,21 +157,6 @@ class CsvLog {
   std::optional<std::uint64_t> last_iteration() const { return last_; }
 
  private:
-  void replace_with(const std::string& text) {
-    std::filesystem::path beside = path_;
-    beside += ".tmp";
-    std::ofstream out(beside, std::ios::binary);
-    out.write(text.data(), static_cast<std::streamsize>(text.size()));
-    out.close();
-    std::error_code problem;
-    if (out) std::filesystem::rename(beside, path_, problem);
-    if (out && !problem) return;
-    std::error_code ignored;
-    std::filesystem::remove(beside, ignored);
-    throw Error("cannot write the log ", path_.string(),
-                "; check that the folder exists and is writable");
-  }
-
   std::filesystem::path path_;
   std::size_t columns_;
   std::optional<std::uint64_t> last_;

@@ -28,10 +28,8 @@ struct DvganTrainOptions {
   std::size_t steps() const { return critic_steps + 1; }
 
   void list_fields(FieldList& list) {
-    list.add(iterations, {.key = "iterations",
-                          .help = "how long to train",
-                          .range = Range::at_least(1),
-                          .saved = false});
+    list.add(iterations,
+             {.key = "iterations", .help = "how long to train", .range = Range::at_least(1), .saved = false});
     list.add(critic_steps,
              {.key = "critic_steps", .help = "critic steps in each iteration", .range = Range::at_least(1)});
     list.add(batch, {.key = "batch", .help = "motions in a step", .range = Range::at_least(1)});
@@ -40,9 +38,9 @@ struct DvganTrainOptions {
                          .range = Range::at_least(0),
                          .option = "--lambda"});
     adam.list_fields(list);
-    list.add(input_shift, {.key = "input_shift",
-                           .help = "shift motions in time at the critic's input",
-                           .option = "--shift"});
+    list.add(
+        input_shift,
+        {.key = "input_shift", .help = "shift motions in time at the critic's input", .option = "--shift"});
     critic.list_fields(list);
     list.add(completion_share,
              {.key = "completion_share",
@@ -117,10 +115,10 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
     const Indices shift = draw_shift(key);
     const Tensor real = shifted(Var::constant(batch.motion), shift).value();
     const Var h_txt = critic_.encode_text(batch.text), pairs_txt = concatenate({h_txt, h_txt}, 0);
-    critic_loss_ =
-        critic_loss([&](const Var& x) { return critic_(x, pairs_txt); },
-                    [&](const Var& x) { return critic_(x, h_txt); }, real, shifted(fake, shift).value(),
-                    random_uniform(context, key.with(RandomStream::interpolation), options_.batch), options_.lambda_gp);
+    critic_loss_ = critic_loss(
+        [&](const Var& x) { return critic_(x, pairs_txt); }, [&](const Var& x) { return critic_(x, h_txt); },
+        real, shifted(fake, shift).value(),
+        random_uniform(context, key.with(RandomStream::interpolation), options_.batch), options_.lambda_gp);
     critic_adam_.step(grad(critic_loss_.loss, critic_adam_.parameters()));
     critic_loss_ = {
         {}, critic_loss_.wasserstein.detach(), critic_loss_.penalty.detach(), {}};  // drops the graph
@@ -128,6 +126,7 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
 
   /// One update of the generator; no gradient flows to the critic's parameters.
   void generator_step(std::uint32_t step) {
+    const Frozen critic_fixed(named_parameters(critic_));
     const RandomKey key{.seed = options_.seed, .step = step};
     const CaptionedBatch batch = windows_.draw(options_.seed, step, options_.batch);
     const Var fake = shifted(make_fake(batch, key), draw_shift(key));
@@ -161,8 +160,8 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
   Indices draw_shift(const RandomKey& key) const {
     if (!options_.input_shift) return {};
     const std::size_t frames = model_.format().frames, half = frames / 2;
-    return random_integers(model_.context(), key.with(RandomStream::shift), options_.batch, -static_cast<int>(half),
-                           2 * half + 1);
+    return random_integers(model_.context(), key.with(RandomStream::shift), options_.batch,
+                           -static_cast<int>(half), 2 * half + 1);
   }
   Var shifted(const Var& motion, const Indices& shift) const {
     return shift.empty() ? motion : shift_frames(motion, shift, motion.dim(0), {.sign = -1});
@@ -179,7 +178,8 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
 inline RunResult train(Dvgan& model, const motion::Dataset& data, const DvganTrainOptions& options,
                        const RunOptions& run = {}) {
   DvganTrainer trainer(model, data, options);
-  return run_training(trainer, [&](const std::filesystem::path& path) { data.write_split(path); }, run);
+  return run_training(
+      trainer, [&](const std::filesystem::path& path) { data.write_split(path); }, run);
 }
 
 }  // namespace motiongan

@@ -29,10 +29,8 @@ struct PredictionTrainOptions {
   std::size_t steps() const { return 1; }
 
   void list_fields(FieldList& list) {
-    list.add(iterations, {.key = "iterations",
-                          .help = "how long to train",
-                          .range = Range::at_least(1),
-                          .saved = false});
+    list.add(iterations,
+             {.key = "iterations", .help = "how long to train", .range = Range::at_least(1), .saved = false});
     list.add(batch, {.key = "batch", .help = "windows in a step", .range = Range::at_least(1)});
     list.add(prefix, {.key = "prefix", .help = "frames given", .range = Range::at_least(1)});
     list.add(future, {.key = "future", .help = "frames to predict", .range = Range::at_least(1)});
@@ -136,7 +134,8 @@ class PredictionTrainer : public ModelTrainer<PredictionModel, PredictionTrainOp
 inline RunResult train(PredictionModel& model, const PredictionData& data,
                        const PredictionTrainOptions& options, const RunOptions& run = {}) {
   PredictionTrainer trainer(model, data, options);
-  return run_training(trainer, [&](const std::filesystem::path& path) { data.write_split(path); }, run);
+  return run_training(
+      trainer, [&](const std::filesystem::path& path) { data.write_split(path); }, run);
 }
 
 }  // namespace motiongan

@@ -163,9 +163,7 @@ class ProgressBar {
   double rate() const { return elapsed_ > 0 ? counted_ / elapsed_ : 0; }
 
  private:
-  double now() const {
-    return options_.now ? options_.now() : clock_seconds();
-  }
+  double now() const { return options_.now ? options_.now() : clock_seconds(); }
 
   /// Queried at every redraw, because the window may be resized.
   std::size_t width() const {

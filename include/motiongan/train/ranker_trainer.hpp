@@ -2,8 +2,8 @@
 #pragma once
 #include <set>
 
-#include "motiongan/models/ranker.hpp"
 #include "motiongan/data/descriptions.hpp"
+#include "motiongan/models/ranker.hpp"
 #include "motiongan/ops/cross_entropy.hpp"
 #include "motiongan/optim/adam.hpp"
 #include "motiongan/train/run.hpp"
@@ -23,10 +23,8 @@ struct RankerTrainOptions {
   std::size_t steps() const { return 1; }
 
   void list_fields(FieldList& list) {
-    list.add(iterations, {.key = "iterations",
-                          .help = "how long to train",
-                          .range = Range::at_least(1),
-                          .saved = false});
+    list.add(iterations,
+             {.key = "iterations", .help = "how long to train", .range = Range::at_least(1), .saved = false});
     list.add(batch, {.key = "batch", .help = "motions in a step", .range = Range::at_least(1)});
     list.add(descriptions, {.key = "descriptions",
                             .help = "largest number of descriptions to choose among in a step",
@@ -135,7 +133,8 @@ class RankerTrainer : public ModelTrainer<Ranker, RankerTrainOptions, RankerLoss
 inline RunResult train(Ranker& model, const motion::Dataset& data, const RankerTrainOptions& options,
                        const RunOptions& run = {}) {
   RankerTrainer trainer(model, data, options);
-  return run_training(trainer, [&](const std::filesystem::path& path) { data.write_split(path); }, run);
+  return run_training(
+      trainer, [&](const std::filesystem::path& path) { data.write_split(path); }, run);
 }
 
 }  // namespace motiongan

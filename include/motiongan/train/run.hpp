@@ -15,11 +15,12 @@ using RunCallback = std::function<bool(const Trainer& trainer)>;
 
 /// How a run is saved and monitored; none of it changes the result of training.
 struct RunOptions {
-  std::filesystem::path save_dir{};  ///< folder of model, checkpoint, log and split; empty: nothing is written
-  bool resume = false;               ///< continue the run in save_dir
-  double save_every_minutes = 5;     ///< a checkpoint is also written when the run ends or is stopped
-  std::size_t log_every = 1;         ///< iterations between rows of the log; each row waits for the device
-  double max_minutes = 0;            ///< stop after this time; 0: no limit
+  std::filesystem::path
+      save_dir{};                 ///< folder of model, checkpoint, log and split; empty: nothing is written
+  bool resume = false;            ///< continue the run in save_dir
+  double save_every_minutes = 5;  ///< a checkpoint is also written when the run ends or is stopped
+  std::size_t log_every = 1;      ///< iterations between rows of the log; each row waits for the device
+  double max_minutes = 0;         ///< stop after this time; 0: no limit
   std::function<bool()> should_stop = {};  ///< called after every iteration; true stops the run
   /// Called with every row of the log.
   std::function<void(std::size_t iteration, std::span<const NamedLoss> losses)> report = {};
@@ -35,9 +36,9 @@ struct RunOptions {
                                   .help = "minutes between two checkpoints; 0: only at the end",
                                   .range = Range::at_least(0),
                                   .option = "--save-every"});
-    list.add(log_every, {.key = "log_every",
-                         .help = "iterations between two rows of log.csv",
-                         .range = Range::at_least(1)});
+    list.add(
+        log_every,
+        {.key = "log_every", .help = "iterations between two rows of log.csv", .range = Range::at_least(1)});
   }
 };
 
@@ -71,14 +72,16 @@ namespace detail {
 
 /// Stops the run `minutes` from now.
 inline RunCallback time_limit(double minutes) {
-  return [minutes, start = clock_seconds()](const Trainer&) { return clock_seconds() - start >= minutes * 60; };
+  return
+      [minutes, start = clock_seconds()](const Trainer&) { return clock_seconds() - start >= minutes * 60; };
 }
 
 /// Logs (if there is a log) and reports the losses every `every` iterations and after the last one. Throws
 /// DivergedError if a loss is not finite.
-inline RunCallback log_rows(std::shared_ptr<CsvLog> log, std::size_t every, decltype(RunOptions::report) report) {
-  return [=, start = clock_seconds(), last_row = 0.0, rows_since = std::size_t{0}](
-             const Trainer& trainer) mutable {
+inline RunCallback log_rows(std::shared_ptr<CsvLog> log, std::size_t every,
+                            decltype(RunOptions::report) report) {
+  return [=, start = clock_seconds(), last_row = 0.0,
+          rows_since = std::size_t{0}](const Trainer& trainer) mutable {
     ++rows_since;
     const std::size_t iteration = trainer.iteration();
     if (iteration % every != 0 && iteration != trainer.iterations()) return false;
@@ -138,9 +141,8 @@ inline RunResult run_training(Trainer& trainer,
     write_split(files.split());
     std::vector<std::string> names{"seconds", "iterations_per_second"};
     for (const std::string& name : trainer.loss_names()) names.push_back(name);
-    log = std::make_shared<CsvLog>(files.log(), names,
-                                   run.resume ? std::optional<std::uint64_t>(trainer.iteration())
-                                              : std::nullopt);
+    log = std::make_shared<CsvLog>(
+        files.log(), names, run.resume ? std::optional<std::uint64_t>(trainer.iteration()) : std::nullopt);
   }
   std::vector<RunCallback> callbacks{detail::log_rows(log, run.log_every, run.report)};
   if (run.max_minutes > 0) callbacks.push_back(detail::time_limit(run.max_minutes));
@@ -153,8 +155,7 @@ inline RunResult run_training(Trainer& trainer,
     trainer.iterate();
     for (const RunCallback& callback : callbacks) result.stopped |= callback(trainer);
     if (result.stopped) break;
-    if (keeps && run.save_every_minutes > 0 &&
-        clock_seconds() - saved >= run.save_every_minutes * 60) {
+    if (keeps && run.save_every_minutes > 0 && clock_seconds() - saved >= run.save_every_minutes * 60) {
       detail::save_run(trainer, files, run.notes);
       saved = clock_seconds();
     }

@@ -127,8 +127,9 @@ class ModelTrainer : public Trainer {
   }
   void require_same_run(const io::SafeTensors& file, const std::string& where) const override {
     auto model_then = model_options<Model>(file, where), model_now = model_.options();
-    require(Model::kind_of(model_then) == Model::kind_of(model_now), where, ": the run trains another model, ",
-            model_kind(file, where), "; give the options of its first start, or choose another folder");
+    require(Model::kind_of(model_then) == Model::kind_of(model_now), where,
+            ": the run trains another model, ", model_kind(file, where),
+            "; give the options of its first start, or choose another folder");
     detail::require_same_options(fields_of(model_then), fields_of(model_now), where);
     const auto format = file.metadata.find("format");
     require(format != file.metadata.end() && format->second == Model::write_format(model_.format()), where,

@@ -31,8 +31,8 @@ struct Figure {
   std::size_t frames = 0;
   std::vector<int> parents;  ///< [nodes], parent node; -1 for the first node, the root
   std::vector<Side> sides;   ///< [nodes], side of the bone that ends in the node
-  std::vector<char> heads;  ///< [nodes], 1: the bone that ends in the node is the head, 2: the head sits on
-                            ///< the node, 0: neither
+  std::vector<char> heads;   ///< [nodes], 1: the bone that ends in the node is the head, 2: the head sits on
+                             ///< the node, 0: neither
   std::vector<motion::Vec3> points;  ///< [frames, nodes], world space, y up, in the file's unit
   double height = 1;                 ///< approximate standing height, in the file's unit
   double floor = 0;                  ///< height of the floor, in the file's unit

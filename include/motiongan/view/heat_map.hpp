@@ -27,9 +27,9 @@ struct HeatMapOptions {
   std::string row_label = {};     ///< what rows are, such as "query frame"
   std::string column_label = {};  ///< what columns are
   std::size_t cell = 0;           ///< side of a cell in pixels; 0: about 360 pixels per map
-  double row_scale = 1;  ///< axis units per row, such as 4 frames after pooling
-  double column_scale = 1;  ///< axis units per column
-  double high = 0;  ///< value of the darkest colour; 0: the largest value in the maps
+  double row_scale = 1;           ///< axis units per row, such as 4 frames after pooling
+  double column_scale = 1;        ///< axis units per column
+  double high = 0;                ///< value of the darkest colour; 0: the largest value in the maps
 };
 
 /// Colour map from pale yellow (0) through red to nearly black (1). Its brightness decreases monotonically,

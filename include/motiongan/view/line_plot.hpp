@@ -64,9 +64,8 @@ inline std::string axis_number(double value, double step) {
 /// Plots `series` over common axes, with axis labels and a legend. Throws Error if x and y of a series differ
 /// in length, no point is finite, or the size is below 240 x 160 pixels.
 inline Image line_plot(std::span<const Series> series, const PlotOptions& options = {}) {
-  require(options.width >= 240 && options.height >= 160,
-          "the plot size is ", options.width, " x ", options.height,
-          " pixels, expected at least 240 x 160");
+  require(options.width >= 240 && options.height >= 160, "the plot size is ", options.width, " x ",
+          options.height, " pixels, expected at least 240 x 160");
   constexpr double infinity = std::numeric_limits<double>::infinity();
   double low_x = infinity, high_x = -infinity, low_y = infinity, high_y = -infinity;
   for (const Series& s : series) {
@@ -80,8 +79,7 @@ inline Image line_plot(std::span<const Series> series, const PlotOptions& option
       high_y = std::max(high_y, s.y[i]);
     }
   }
-  require(low_x <= high_x, "none of the ", series.size(),
-          " series has a finite point to plot");
+  require(low_x <= high_x, "none of the ", series.size(), " series has a finite point to plot");
 
   const double width = static_cast<double>(options.width), height = static_cast<double>(options.height);
   const detail::Axis y_axis = detail::nice_axis(low_y, high_y, std::max(2.0, height / 80));

@@ -99,11 +99,9 @@ inline void draw_pose(Canvas& canvas, const Figure& figure, const SeenFigure& se
 /// option is out of range, or a motion cannot be drawn (see make_figure).
 inline Image pose_strip(std::span<const ViewedMotion> motions, const StripOptions& options = {}) {
   require(!motions.empty(), "there is no motion to draw, expected at least one");
-  require(options.poses > 0 && options.poses <= 200, "poses is ", options.poses,
-          ", expected 1 to 200");
-  require(options.figure_height >= 20 && options.figure_height <= 2000,
-          "figure_height is ", options.figure_height,
-          " pixels, expected 20 to 2000");
+  require(options.poses > 0 && options.poses <= 200, "poses is ", options.poses, ", expected 1 to 200");
+  require(options.figure_height >= 20 && options.figure_height <= 2000, "figure_height is ",
+          options.figure_height, " pixels, expected 20 to 2000");
   std::vector<Figure> figures;
   std::vector<detail::SeenFigure> seen;
   double left = -0.3, right = 0.3;  // extent of a pose, the same for all rows so that they line up

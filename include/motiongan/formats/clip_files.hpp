@@ -1,0 +1,68 @@
+// Which files of a folder are clips, and what the clips are called.
+#pragma once
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "motiongan/core/error.hpp"
+
+namespace motiongan::motion {
+
+/// The extension in lower case: ".bvh".
+inline std::string extension_of(const std::filesystem::path& file) {
+  std::string text = file.extension().string();
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
+/// All files with one of the extensions (".bvh") in a folder and its subfolders, sorted, except those in
+/// `without`; or the file itself. Throws Error if there are none.
+inline std::vector<std::filesystem::path> find_clip_files(
+    const std::filesystem::path& where, const std::vector<std::string_view>& extensions = {".bvh"},
+    const std::vector<std::filesystem::path>& without = {}) {
+  namespace fs = std::filesystem;
+  std::string kinds;
+  for (std::size_t i = 0; i < extensions.size(); ++i)
+    kinds += concat(i == 0 ? "" : i + 1 < extensions.size() ? ", " : " or ", extensions[i]);
+  std::error_code problem;
+  require(fs::exists(where, problem), where.string(), " does not exist; give a ", kinds,
+          " file or a folder of them");
+  if (!fs::is_directory(where, problem)) return {where};
+  std::vector<fs::path> out;
+  fs::recursive_directory_iterator entries(where, fs::directory_options::skip_permission_denied, problem);
+  for (; !problem && entries != fs::recursive_directory_iterator(); entries.increment(problem)) {
+    const fs::path& file = entries->path();
+    const bool is_clip =
+        std::find(extensions.begin(), extensions.end(), extension_of(file)) != extensions.end();
+    std::error_code ignored;
+    const bool left_out = std::any_of(without.begin(), without.end(), [&](const fs::path& other) {
+      return !other.empty() && fs::equivalent(file, other, ignored);
+    });
+    if (is_clip && !left_out && !entries->is_directory()) out.push_back(file);
+  }
+  require(!problem, "folder ", where.string(), " cannot be read: ", problem.message());
+  require(!out.empty(), "folder ", where.string(), " and its subfolders have no ", kinds, " file");
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/// Ids of the files: file names without extension or, where two files share a name, paths below `folder`
+/// without extension (`01/walk`).
+inline std::vector<std::string> clip_ids(const std::vector<std::filesystem::path>& files,
+                                         const std::filesystem::path& folder) {
+  std::map<std::string, int> uses;
+  for (const auto& file : files) ++uses[file.stem().string()];
+  std::vector<std::string> ids;
+  for (const auto& file : files) {
+    const bool shared = uses[file.stem().string()] > 1;
+    auto path = file.lexically_relative(folder);
+    ids.push_back(shared ? path.replace_extension().generic_string() : file.stem().string());
+  }
+  return ids;
+}
+
+}  // namespace motiongan::motion
