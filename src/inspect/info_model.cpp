@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "inspect/info.hpp"
-#include "motiongan/data/motion_format_json.hpp"
-#include "motiongan/data/position_format_json.hpp"
 #include "motiongan/io/safetensors.hpp"
+#include "motiongan/models/action_gan.hpp"
+#include "motiongan/models/dvgan.hpp"
 #include "motiongan/train/checkpoint.hpp"
 #include "motiongan/train/csv_log.hpp"
 #include "motiongan/train/run.hpp"
@@ -76,12 +76,8 @@ void print_positions(const motion::PositionFormat& format) {
 void print_format(const io::SafeTensors& file, const std::string& where) {
   const auto text = file.metadata.find("format");
   require(text != file.metadata.end(), where, ": the model has no motion format in its metadata");
-  const auto json = nlohmann::json::parse(text->second, nullptr, false);
-  require(!json.is_discarded(), where, ": the model's motion format cannot be read");
-  const std::string& model = file.metadata.at("motiongan_model");
-  if (model == "attention_generator" || model == "lstm_baseline")
-    return print_positions(io::position_format_from_json(json));
-  const motion::MotionFormat format = io::motion_format_from_json(json);
+  if (holds_model<ActionGan>(file)) return print_positions(ActionGan::read_format(text->second, where));
+  const motion::MotionFormat format = Dvgan::read_format(text->second, where);  // a ranker has the same
   print_fact("motion", fmt::format("{} frames at {} per second ({})", format.frames, brief(format.rate),
                                    duration(static_cast<double>(format.frames) / format.rate)));
   print_fact("skeleton",
@@ -111,7 +107,7 @@ void print_tensors(const fs::path& path) {
   const std::string where = path.string();
   const io::SafeTensors file = io::SafeTensors::read(path);
   const auto model = file.metadata.find("motiongan_model");
-  const bool checkpoint = file.metadata.contains("iteration") && model != file.metadata.end();
+  const bool checkpoint = is_checkpoint(file) && model != file.metadata.end();
   const std::size_t numbers = count_below(file, "");
   if (model == file.metadata.end()) {
     fmt::print("{}: {} with {} numbers\n", where, counted(file.tensors.size(), "tensor"), millions(numbers));

@@ -1,6 +1,8 @@
 // Training through the command: what it says, stopping and resuming, and what it refuses.
 #include <doctest/doctest.h>
 
+#include <cstdlib>
+
 #include "command.hpp"
 #include "motiongan/io/safetensors.hpp"
 #include "motiongan/train/csv_log.hpp"
@@ -127,4 +129,28 @@ TEST_CASE("a training that cannot be is refused before it begins") {
   refused("--resume --save broken", "broken/checkpoint.safetensors");
   refused("clips --device tpu", "no OpenCL device matches \"tpu\"");
   CHECK(call("train dvgan clips --validation deep").status > 1);  // usage
+}
+
+TEST_CASE("a run of an earlier version is described, generates and resumes") {
+  const char* set = std::getenv("MOTIONGAN_SHARED");
+  const fs::path shared = set ? fs::path(set) : fs::path(MOTIONGAN_SOURCE_DIR) / "../shared";
+  const fs::path run = shared / "models/cmu-cnn-6115", clips = shared / "data/cmu";
+  if (!fs::exists(run) || !fs::exists(clips)) {
+    MESSAGE("skipped: there is no ", run.string(), " with the clips it was trained on");
+    return;
+  }
+  const TestFolder folder;
+  fs::create_directory("run");
+  for (const auto& entry : fs::directory_iterator(run)) {
+    fs::copy(entry.path(), "run" / entry.path().filename());
+    fs::permissions("run" / entry.path().filename(), fs::perms::owner_write, fs::perm_options::add);
+  }
+  const Said info = call("info run");
+  CHECK_MESSAGE(info.has("validation dense"), info.text);
+  CHECK(call("generate run --text walk").has("walk_000.bvh"));
+  const std::string data = fs::absolute(clips).lexically_normal().string();
+  const Said more = call("train dvgan --resume --save run --iterations 6116 " + data + " --captions " + data +
+                         "/captions.tsv");
+  CHECK_MESSAGE(more.status == 0, more.text);
+  CHECK(more.has("finished after 6116 of 6116 iterations"));
 }

@@ -155,8 +155,8 @@ TEST_CASE("clips must share one skeleton, but not bone lengths") {
   more.skeleton.joints.push_back({"Tail", 0, {0, 0, 1}, {}, {}});
   more.rotations.assign(more.frames * 3, Quat{});
   more.positions.assign(more.frames * 3, Vec3{});
-  CHECK_THROWS_WITH_AS(Dataset::from_motions(motions, eight_at(4)),
-                       doctest::Contains("'Tail' is extra"), Error);
+  CHECK_THROWS_WITH_AS(Dataset::from_motions(motions, eight_at(4)), doctest::Contains("'Tail' is extra"),
+                       Error);
   motions = several(2);
   motions[1].id = "clip0";
   CHECK_THROWS_WITH_AS(Dataset::from_motions(motions, eight_at(4)),

@@ -233,6 +233,30 @@ TEST_CASE("options or data that differ from the first start are refused by name"
   CHECK(says(message_of([&] { load_checkpoint(wider.trainer, path); }), "the run was started with hidden ="));
 }
 
+TEST_CASE("a checkpoint with enums as numbers, as earlier versions wrote it, resumes to the same bits") {
+  const Scratch scratch;
+  const fs::path path = scratch.path / "checkpoint.safetensors";
+  DvganTrainOptions options = small_options;
+  options.critic = {.critic = CriticKind::rnn, .diff_input = DiffInput::difference};
+  const auto fresh = [&] { return Run(options, 8, 8, GeneratorKind::rnn); };
+  Run unbroken = fresh(), first = fresh(), second = fresh();
+  unbroken.iterate(3);
+  first.iterate(1);
+  save_checkpoint(first.trainer, path);
+  io::SafeTensors file = io::SafeTensors::read(path);
+  auto training = nlohmann::json::parse(file.metadata.at("training"));
+  CHECK(training.at("critic") == "rnn");
+  CHECK(training.at("diff_input") == "difference");
+  training["critic"] = training["diff_input"] = 1;
+  training["validation"] = training["level_weights"] = 0;
+  file.metadata["training"] = training.dump();
+  file.metadata["options"] = R"({"final_cut":false,"hidden":8})";
+  file.write(path);
+  load_checkpoint(second.trainer, path);
+  second.iterate(3);
+  CHECK(second.state() == unbroken.state());
+}
+
 TEST_CASE("a damaged checkpoint is refused by name and changes nothing") {
   CHECK(refusal([](auto&) {}) == "no error");
   CHECK(says(refusal([](auto& f) { f.metadata.clear(); }), "not a motiongan model"));
