@@ -80,7 +80,7 @@ inline RunCallback time_limit(double minutes) {
 /// DivergedError if a loss is not finite.
 inline RunCallback log_rows(std::shared_ptr<CsvLog> log, std::size_t every,
                             decltype(RunOptions::report) report) {
-  return [=, start = clock_seconds(), last_row = 0.0,
+  return [log = std::move(log), report = std::move(report), every, start = clock_seconds(), last_row = 0.0,
           rows_since = std::size_t{0}](const Trainer& trainer) mutable {
     ++rows_since;
     const std::size_t iteration = trainer.iteration();
