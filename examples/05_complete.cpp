@@ -1,6 +1,6 @@
 // Continues the first seconds of a clip, guided by a text. For your own data: load a model of
 // `motiongan train dvgan --generator rnn` with Dvgan::load(ctx, "save/rnn/generator.safetensors"), and a clip
-// with motion::to_motion(motion::read_bvh("clip.bvh")).
+// with motion::read_motion("clip.bvh").motion.
 #include <cstdio>
 #include <motiongan.hpp>
 using namespace motiongan;

@@ -34,17 +34,23 @@
 #include "motiongan/optim/adam.hpp"
 #include "motiongan/optim/sgd.hpp"
 //
+#include "motiongan/motion/body.hpp"
 #include "motiongan/motion/kinematics.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/motion/position_rotations.hpp"
 #include "motiongan/motion/resampler.hpp"
+#include "motiongan/motion/root_joint.hpp"
 #include "motiongan/motion/root_track.hpp"
 #include "motiongan/motion/rotation.hpp"
 //
+#include "motiongan/formats/amass.hpp"
+#include "motiongan/formats/amc.hpp"
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/formats/bvh_stream.hpp"
 #include "motiongan/formats/expmap_text.hpp"
+#include "motiongan/formats/known_skeletons.hpp"
 #include "motiongan/formats/position_files.hpp"
+#include "motiongan/formats/read_motion.hpp"
 //
 #include "motiongan/data/action_dataset.hpp"
 #include "motiongan/data/dataset.hpp"

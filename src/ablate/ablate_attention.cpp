@@ -14,7 +14,6 @@ struct AblateArgs {
   std::string save;
   std::vector<std::string> variants;
   bool evaluate_only = false;
-  double unit_metres = 0;
   EvaluationOptions evaluation;
 };
 
@@ -82,7 +81,8 @@ int run_ablation(AblateArgs args, const CLI::App& verb) {
     if (!all) return 128 + caught_signal();
   }
   report_variants(context, data, args.save, variants,
-                  {args.evaluation, args.unit_metres, args.evaluate_only && !args.variants.empty()});
+                  {args.evaluation, args.data.options.clips.unit_metres / args.data.options.clips.scale,
+                   args.evaluate_only && !args.variants.empty()});
   return 0;
 }
 
@@ -126,11 +126,6 @@ const Verb ablate_attention_verb{
       option("--future", a.evaluation.frames, "frames after each prior that are compared; the paper: 70")
           ->check(positive());
       option("--window-seed", a.evaluation.seed, "seed that selects the windows")->check(not_negative());
-      verb->add_option(
-              "--unit-metres", a.unit_metres,
-              "metres per unit of the clips, to print lengths in metres (CMU 0.05644, Bandai-Namco 0.01)")
-          ->check(positive())
-          ->group("Evaluation");
       verb->callback([&job, args, verb] {
         fill_in_procedural(*verb, args->data.procedural);
         job = [args, verb] { return run_ablation(*args, *verb); };

@@ -3,13 +3,12 @@
 
 #include <map>
 
-#include "motiongan/data/clip_source.hpp"
-#include "motiongan/data/first_frame.hpp"
-#include "motiongan/formats/bvh.hpp"
 #include "motiongan/formats/text_file.hpp"
 #include "motiongan/metrics/npss.hpp"
 #include "motiongan/motion/motion.hpp"
+#include "motiongan/motion/root_joint.hpp"
 #include "motiongan/motion/skeleton_match.hpp"
+#include "shared/clip_reading.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -18,6 +17,7 @@ struct EvaluateMotionArgs {
   std::string generated, real, json;
   double rate = 0;
   FootSkateOptions feet;
+  motion::ClipOptions clips;
 };
 
 /// Motions by their id: the file's path below the folder, without its extension.
@@ -25,20 +25,17 @@ using NamedMotions = std::map<std::string, motion::Motion>;
 
 /// Loads the clips of a folder or a file at one rate, without T-poses; clips of fewer than four frames are
 /// left out.
-NamedMotions load(const fs::path& where, double rate) {
-  const std::vector<fs::path> files = motion::find_clip_files(where);
-  const std::vector<std::string> ids = motion::clip_ids(files, where);
+NamedMotions load(const fs::path& where, double rate, const motion::ClipOptions& options) {
   NamedMotions out;
   std::size_t short_ones = 0;
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    motion::Clip clip = motion::read_bvh(files[i]);
-    motion::drop_first_frames(clip, motion::FirstFrame::automatic);
-    motion::Motion motion = motion::to_motion(clip);
-    if (rate > 0) motion = motion::resample(motion, rate);
-    if (!out.empty())
-      motion::require_same_joints(out.begin()->second.skeleton, motion.skeleton, files[i].string());
-    motion.frames < 4 ? void(++short_ones) : void(out.emplace(ids[i], std::move(motion)));
-  }
+  for_each_clip(where, options,
+                [&](const fs::path& file, const std::string& id, motion::LoadedMotion&& loaded) {
+                  motion::Motion motion = std::move(loaded.motion);
+                  if (rate > 0) motion = motion::resample(motion, rate);
+                  if (!out.empty())
+                    motion::require_same_joints(out.begin()->second.skeleton, motion.skeleton, file.string());
+                  motion.frames < 4 ? void(++short_ones) : void(out.emplace(id, std::move(motion)));
+                });
   if (short_ones > 0)
     fmt::print(stderr, "motiongan: {} of {} with fewer than four frames left out\n",
                counted(short_ones, "clip"), where.string());
@@ -83,13 +80,13 @@ Pairs compare_pairs(const NamedMotions& generated, const NamedMotions& real) {
 }
 
 int evaluate_motion(const EvaluateMotionArgs& args) {
-  const NamedMotions generated = load(args.generated, args.rate);
+  const NamedMotions generated = load(args.generated, args.rate, args.clips);
   // Speeds and jerk depend on the rate, so both sets are resampled to that of the generated one.
   const double rate = args.rate > 0 ? args.rate : generated.begin()->second.rate;
   for (const auto& [id, motion] : generated)
     require(motion.rate == rate, "the generated clips have different rates (", brief(rate), " and ",
             brief(motion.rate), " per second); choose one with --rate");
-  const NamedMotions real = load(args.real, rate);
+  const NamedMotions real = load(args.real, rate, args.clips);
   const MotionQuality made = measure_quality(all_of(generated), args.feet),
                       truth = measure_quality(all_of(real), args.feet);
   const Pairs pairs = compare_pairs(generated, real);
@@ -129,14 +126,15 @@ const Verb evaluate_motion_verb{
                                   "skating, jerk, bone-length error; and NPSS\n"
                                   "over files of equal names, taken as prediction and ground truth.");
       const auto args = std::make_shared<EvaluateMotionArgs>();
-      verb->add_option("--generated", args->generated, "BVH file, or folder of them")
+      verb->add_option("--generated", args->generated, "motion file, or folder of them")
           ->required()
           ->type_name("DIR");
-      verb->add_option("--real", args->real, "BVH file, or folder of them")->required()->type_name("DIR");
+      verb->add_option("--real", args->real, "motion file, or folder of them")->required()->type_name("DIR");
       verb->add_option("--rate", args->rate, "frames per second to measure at [the generated clips']")
           ->check(CLI::Range(1e-3, 1e4))
           ->type_name("HZ");
       add_quality_options(*verb, args->feet);
+      add_reading_options(*verb, args->clips, true);
       verb->add_option("--json", args->json, "also write all results as JSON")->type_name("FILE");
       verb->callback([&job, args] { job = [args] { return evaluate_motion(*args); }; });
     }};

@@ -8,9 +8,10 @@
 
 #include "motiongan/core/random.hpp"
 #include "motiongan/data/clip_source.hpp"
-#include "motiongan/formats/bvh_reader.hpp"
 #include "motiongan/formats/text_file.hpp"
+#include "motiongan/motion/root_joint.hpp"
 #include "motiongan/train/run.hpp"
+#include "shared/clip_reading.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -21,9 +22,9 @@ struct SourceClip {
   std::optional<motion::Motion> motion;
 };
 
-SourceClip source_of(const motion::Motion& motion, const std::string& id,
-                     const motion::PositionFormat& format) {
+SourceClip source_of(motion::Motion motion, const std::string& id, const motion::PositionFormat& format) {
   const int root = motion.skeleton.find(format.skeleton().joints.front().name);
+  scale_to_model(motion, format.skeleton(), "the clip " + id);
   SourceClip out{clip_for(motion, format, id), {}};
   out.motion = fold_into_root(motion::resample(motion, format.rate), root);
   return out;
@@ -31,15 +32,19 @@ SourceClip source_of(const motion::Motion& motion, const std::string& id,
 
 SourceClip read_source(const fs::path& file, const std::string& id, const motion::PositionFormat& format,
                        const ActionDataArgs& data) {
-  if (motion::extension_of(file) != ".bvh") {
-    motion::PositionClip clip =
-        motion::resample(motion::read_position_file(file, data.options.bones, format.rate), format.rate);
-    clip.id = id;
-    return {std::move(clip), {}};
-  }
-  motion::Clip clip = motion::read_bvh(file);
-  motion::drop_first_frames(clip, data.options.first_frame);
-  return source_of(to_motion(clip), id, format);
+  const motion::ClipOptions& how = data.options.clips;
+  if (!motion::read_motion_detail::holds_positions(file))
+    return source_of(read_clip(file, how, format.space).motion, id, format);
+  motion::LoadedPositions loaded = motion::read_positions(file, how, format.rate);
+  print_notes(loaded.notes);
+  motion::PositionClip clip = motion::resample(loaded.clip, format.rate);
+  const double factor = motion::scale_to(format.skeleton(), clip.skeleton);
+  if (factor != 1)
+    fmt::print(stderr, "motiongan: the clip {} is scaled by {} to the model's size, by leg length\n", id,
+               brief(factor));
+  clip = motion::scaled(std::move(clip), factor);
+  clip.id = id;
+  return {std::move(clip), {}};
 }
 
 GivenPrior take_prior(const SourceClip& source, const motion::PositionFormat& format, std::size_t first) {

@@ -3,11 +3,10 @@
 #include <cmath>
 
 #include "generate/streaming.hpp"
-#include "motiongan/data/first_frame.hpp"
-#include "motiongan/formats/bvh.hpp"
 #include "motiongan/metrics/euler_error.hpp"
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/motion/motion.hpp"
+#include "shared/clip_reading.hpp"
 #include "shared/prompt.hpp"
 #include "shared/show.hpp"
 #include "shared/signals.hpp"
@@ -20,12 +19,14 @@ struct CompleteArgs {
   std::size_t seed_frames = 25, frames = 39, count = 1, first_sample = 0;
   std::uint64_t seed = 1;
   double rate = 0;
+  motion::ClipOptions clips;
 };
 
 /// The clip at the model's rate, from the first seed frame on.
 struct Prior {
   motion::Motion seed, truth;  // truth: the clip's own continuation, as far as it goes
   std::string from;            // where the seed begins, for messages
+  double scale = 1;            // of the clip's lengths to the model's
 };
 
 /// The frame of the file that --from names: "240", or "2.5s".
@@ -41,11 +42,11 @@ std::size_t first_frame(const std::string& from, double rate) {
 }
 
 Prior read_prior(const CompleteArgs& args, const motion::MotionFormat& format) {
-  motion::Clip clip = motion::read_bvh(args.prior);
-  format.require_skeleton(clip.skeleton, "the prior " + args.prior);
-  const std::size_t in_file = clip.frames;
-  const std::size_t posed = motion::drop_first_frames(clip, motion::FirstFrame::automatic);
-  const motion::Motion whole = motion::to_motion(clip);
+  motion::LoadedMotion loaded = read_clip(args.prior, args.clips, format.space);
+  format.require_skeleton(loaded.motion.skeleton, "the prior " + args.prior);
+  const double size = scale_to_model(loaded.motion, format.skeleton(), "the prior " + args.prior);
+  const std::size_t posed = loaded.dropped, in_file = posed + loaded.motion.frames;
+  const motion::Motion& whole = loaded.motion;
   const std::size_t from = std::max(posed, args.from.empty() ? 0 : first_frame(args.from, whole.rate));
   require(from < in_file, "--from ", args.from, " is frame ", from, " of ", args.prior, ", which has ",
           in_file, " frames at ", brief(whole.rate), " per second (",
@@ -61,7 +62,8 @@ Prior read_prior(const CompleteArgs& args, const motion::MotionFormat& format) {
   const std::size_t after = std::min(args.frames, rest.frames - args.seed_frames);
   return {
       slice(rest, 0, args.seed_frames), slice(rest, args.seed_frames, after),
-      fmt::format("frame {}{}", from, posed > 0 && from == posed ? " (after the T-pose at its start)" : "")};
+      fmt::format("frame {}{}", from, posed > 0 && from == posed ? " (after the T-pose at its start)" : ""),
+      size};
 }
 
 /// The times in ms at which the motion-prediction papers measure, each with the nearest frame after the seed,
@@ -159,6 +161,7 @@ int complete(const CompleteArgs& args) {
                 .before = prior.seed,
                 .frames = args.frames,
                 .rate = args.rate,
+                .scale = 1 / prior.scale,
                 .kept = prior.seed.frames + measured_length(prior)};
   if (shows) job.kept = std::max(job.kept, shown_frames(format.rate, args.rate));
   for (std::size_t i = 0; i < args.count; ++i)
@@ -175,6 +178,7 @@ int complete(const CompleteArgs& args) {
   fmt::print("wrote {}: {} of {} from {} on, then {} generated frames ({}), seed {}\n",
              counted(args.count, "BVH file"), counted(prior.seed.frames, "frame"), clip, prior.from,
              args.frames, duration(seconds), args.seed);
+  fmt::print("space: {}\n", prior.scale == 1 ? describe(format.space) : "y up, in the prior's own unit");
   print_errors(prior, *made, format.layout.root());
   if (!shows) return 0;
   std::vector<view::ViewedMotion> shown;
@@ -208,7 +212,7 @@ const Verb complete_verb{
       option("MODEL", args->model, "model file, or the --save folder of a training run")
           ->required()
           ->type_name("");
-      option("--prior", args->prior, "BVH clip to continue, with the model's skeleton")
+      option("--prior", args->prior, "clip to continue, with the model's skeleton")
           ->required()
           ->type_name("CLIP.bvh");
       option("--text", args->text, "description of what comes next")->required()->type_name("TEXT");
@@ -233,6 +237,7 @@ const Verb complete_verb{
       option("--rate", args->rate, "frames per second of the files, by interpolation [the model's]")
           ->check(CLI::Range(1e-3, 1e4))
           ->type_name("HZ");
+      add_reading_options(*verb, args->clips, false);
       option("--out", args->out, "folder to write to; created if missing")
           ->capture_default_str()
           ->type_name("DIR");

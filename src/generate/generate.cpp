@@ -23,23 +23,9 @@ struct GenerateArgs {
 std::vector<std::string> all_texts(const GenerateArgs& args) {
   std::vector<std::string> texts = args.texts;
   for (const std::string& text : texts) check_text(text);
-  if (!args.prompts.empty()) {
-    const std::string all = motion::read_text(args.prompts, "prompt file");
-    std::size_t line = 1;
-    for (std::size_t at = 0; at < all.size(); ++line) {
-      std::string text = all.substr(at, all.find('\n', at) - at);
-      at += text.size() + 1;
-      text.erase(text.find_last_not_of(" \t\r") + 1);
-      if (text.empty()) continue;
-      require(!motion::split_words(text).empty(), args.prompts, ":", line, ": \"", text,
-              "\" has no words; describe a motion");
-      texts.push_back(text);
-    }
-    require(!texts.empty(), args.prompts, " has no prompts; write one per line");
-  }
+  if (!args.prompts.empty())
+    for (std::string& text : read_prompts(args.prompts)) texts.push_back(std::move(text));
   require(!texts.empty(), "no text is given; use --text \"walk\" (may be repeated) or --prompts FILE");
-  for (const std::string& text : texts)
-    require(motion::is_utf8(text), "the text \"", text, "\" is not UTF-8");
   return texts;
 }
 
@@ -117,6 +103,7 @@ int generate(const GenerateArgs& args, const fs::path& file) {
   fmt::print("wrote {} of {} at {} per second ({} each), seed {}\n", counted(files_made, "BVH file"),
              counted(frames, "frame"), brief(rate), duration(static_cast<double>(frames) / rate),
              args.options.seed);
+  fmt::print("space: {}\n", describe(format.space));
   if (measured != nullptr) drift.print();
   if (!args.drift.empty()) {
     drift.write_csv(args.drift);
@@ -167,7 +154,8 @@ const Verb generate_verb{
           ->type_name("TEXT")
           ->expected(1)
           ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-      verb->add_option("--prompts", args->prompts, "file with a text on each line")->type_name("FILE");
+      verb->add_option("--prompts", args->prompts, "file with a text on each line; lines with # are comments")
+          ->type_name("FILE");
       verb->add_option("--count", args->options.count,
                        "motions for each text, or for the schedule of classes")
           ->check(positive())

@@ -7,9 +7,10 @@ namespace motiongan::command {
 struct ActionGenerateArgs {
   std::vector<std::string> from;  // clips
   std::vector<double> at;         // seconds
-  std::string schedule, format = "bvh", data, bones, attention_map;
+  std::string schedule, format = "bvh", data, attention_map;
   double seconds = 0;
   bool with_prior = true;
+  motion::ClipOptions clips;  // how --from is read
   // As for text-conditioned models.
   std::string model, out, html, png;
   std::size_t count = 1, frames = 0, first_sample = 0;

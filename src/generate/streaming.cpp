@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "motiongan/formats/bvh_stream.hpp"
+#include "motiongan/motion/body.hpp"
 #include "motiongan/train/progress.hpp"
 #include "shared/signals.hpp"
 
@@ -50,12 +51,12 @@ bool write_some(const Dvgan& model, const StreamJob& job, std::size_t first, std
     const motion::Skeleton& skeleton = begun ? job.before.skeleton : model.format().skeleton();
     growing.push_back(
         {ids[i],
-         std::make_unique<GrowingFile>(job.files[first + i], skeleton, job.before.frames + job.frames, rate,
-                                       job.rate > 0 ? job.rate : rate),
+         std::make_unique<GrowingFile>(job.files[first + i], scaled(skeleton, job.scale),
+                                       job.before.frames + job.frames, rate, job.rate > 0 ? job.rate : rate),
          DriftMeter(model.format()),
          {}});
     if (!begun) continue;
-    growing.back().file->append(job.before);
+    growing.back().file->append(motion::scaled(job.before, job.scale));
     growing.back().kept = slice(job.before, 0, std::min(job.kept, job.before.frames));
   }
   for (std::size_t at = 0; at < job.frames; at += at_a_time) {
@@ -64,7 +65,7 @@ bool write_some(const Dvgan& model, const StreamJob& job, std::size_t first, std
     stream.step(frames);
     for (Growing& g : growing) {
       const motion::Motion piece = stream.motion(g.id);
-      g.file->append(piece);
+      g.file->append(motion::scaled(piece, job.scale));
       if (drift != nullptr) g.drift.add(stream.poses(g.id), frames);
       const std::size_t wanted = std::min(frames, job.kept - std::min(job.kept, g.kept.frames));
       if (wanted == 0) continue;

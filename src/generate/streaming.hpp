@@ -15,6 +15,7 @@ struct StreamJob {
   motion::Motion before = {};        ///< what each file begins with, at the model's rate; may have no frames
   std::size_t frames = 0;            ///< to generate for each
   double rate = 0;                   ///< of the files, by interpolation; 0: the model's
+  double scale = 1;                  ///< of the files' lengths to the model's
   std::size_t kept = 0;              ///< frames of each to return, at the model's rate
 };
 

@@ -1,5 +1,6 @@
 // The parts of `motiongan info`.
 #pragma once
+#include "motiongan/formats/clip_options.hpp"
 #include "shared/command.hpp"
 
 namespace motiongan::command {
@@ -9,6 +10,6 @@ void print_tensors(const fs::path& file);
 /// Prints the folder of a training run.
 void print_run(const fs::path& folder);
 /// Prints a folder of clips and their captions.
-void print_folder(const fs::path& folder, const fs::path& captions);
+void print_folder(const fs::path& folder, const fs::path& captions, const motion::ClipOptions& options);
 
 }  // namespace motiongan::command

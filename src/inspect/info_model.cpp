@@ -69,6 +69,7 @@ void print_positions(const motion::PositionFormat& format) {
                          format.skeleton().joints.front().name, counted(format.dof(), "value"),
                          format.layout.root_track() ? ", including the root's steps, turns and height"
                                                     : "; the root stays in place"));
+  print_fact("space", describe(format.space));
   print_wrapped("classes", format.classes, ", ");
 }
 
@@ -85,6 +86,7 @@ void print_format(const io::SafeTensors& file, const std::string& where) {
                          format.skeleton().joints[format.layout.root()].name, counted(format.dof(), "value"),
                          format.layout.root_position() ? ", including the root's position"
                                                        : "; the root stays in place"));
+  print_fact("space", describe(format.space));
   print_fact("words", fmt::format("{}, and {} for all others:", format.vocabulary.size() - 1,
                                   motion::Vocabulary::unknown));
   const std::vector<std::string>& words = format.vocabulary.words();

@@ -4,10 +4,13 @@
 
 #include "motiongan/data/captions.hpp"
 #include "motiongan/formats/bvh.hpp"
+#include "motiongan/formats/read_motion.hpp"
 #include "motiongan/models/action_gan.hpp"
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/search/collection.hpp"
 #include "motiongan/search/ranking.hpp"
+#include "shared/caption_report.hpp"
+#include "shared/clip_reading.hpp"
 #include "shared/prompt.hpp"
 #include "shared/show.hpp"
 
@@ -19,6 +22,7 @@ struct SearchArgs {
   std::size_t hypotheses = 16, top = 10, hop = 0;
   std::uint64_t seed = 1;
   bool windows = false;
+  motion::ClipOptions clips;
 };
 
 /// A result, as it is printed.
@@ -39,13 +43,37 @@ struct Found {
 /// A clip's name: its path below the collection, without extension.
 std::string clip_name(const std::string& path) { return fs::path(path).replace_extension().generic_string(); }
 
-std::vector<std::string> captions_of(const motion::Captions& captions, const std::string& path) {
-  for (const std::string& key : {fs::path(path).stem().string(), clip_name(path)})
-    if (const auto found = captions.find(key); found != captions.end()) return found->second;
-  return {};
+/// The folder that the index's paths are relative to.
+fs::path home_of(const std::string& collection) {
+  return fs::is_directory(collection) ? fs::path(collection) : fs::path(collection).parent_path();
+}
+
+/// The captions of all clips of the index, with a warning of those that fit no clip.
+std::vector<std::vector<motion::Caption>> read_captions(const SearchIndex& index, const SearchArgs& args) {
+  std::vector<fs::path> files;
+  std::vector<motion::ClipName> names;
+  for (const SearchClip& clip : index.clips()) {
+    files.push_back(home_of(args.collection) / clip.path);
+    names.push_back({clip_name(clip.path), clip_name(clip.path), fs::path(clip.path).stem().string()});
+  }
+  motion::CaptionMatch match =
+      motion::find_captions(captions_for(args.collection, args.captions), files, names);
+  for (const std::string& remark : caption_remarks(match.report))
+    fmt::print(stderr, "motiongan: {}: {}\n", match.report.source, remark);
+  return std::move(match.of_clip);
+}
+
+/// The captions of a stretch of a clip (seconds): those of the whole clip and of parts that it overlaps.
+std::vector<std::string> captions_of(const std::vector<motion::Caption>& captions, double begin, double end) {
+  std::vector<std::string> out;
+  for (const motion::Caption& caption : captions)
+    if (!caption.part || (caption.part->begin < end && begin < caption.part->end))
+      out.push_back(caption.text);
+  return out;
 }
 
 Found find(const Dvgan& model, const SearchArgs& args, const SearchCollection& collection,
+           const std::vector<std::vector<motion::Caption>>& captions,
            std::vector<std::vector<float>> hypotheses) {
   const SearchIndex& index = collection.index;
   const motion::MotionFormat& format = model.format();
@@ -57,13 +85,12 @@ Found find(const Dvgan& model, const SearchArgs& args, const SearchCollection& c
   for (const SearchClip& clip : index.clips()) clip.left_out.empty() ? ++found.clips : ++found.left_out;
   found.windows = ranking.windows;
   found.median = ranking.median;
-  const fs::path file = captions_for(args.collection, args.captions);
-  const motion::Captions captions = file.empty() ? motion::Captions{} : motion::read_captions(file);
   for (const SearchHit& hit : ranking.hits) {
     const SearchClip& clip = index.clips()[hit.window.clip];
     const double begin = clip.begin + static_cast<double>(hit.window.frame) / format.rate;
-    found.results.push_back({clip_name(clip.path), clip.path, captions_of(captions, clip.path), begin,
-                             begin + static_cast<double>(format.frames) / format.rate, hit});
+    const double end = begin + static_cast<double>(format.frames) / format.rate;
+    found.results.push_back({clip_name(clip.path), clip.path,
+                             captions_of(captions[hit.window.clip], begin, end), begin, end, hit});
   }
   return found;
 }
@@ -153,13 +180,14 @@ motion::Motion aligned(const motion::Motion& hypothesis, int shift) {
 void show_results(const Found& found, const SearchArgs& args, const motion::MotionFormat& format) {
   constexpr std::size_t most = 12;
   constexpr double rate = 30;  // of the page; motion at a lower rate is interpolated
-  const fs::path folder =
-      fs::is_directory(args.collection) ? fs::path(args.collection) : fs::path(args.collection).parent_path();
+  const fs::path folder = home_of(args.collection);
   std::vector<view::ViewedMotion> shown;
   for (std::size_t i = 0; i < std::min(most, found.results.size()); ++i) {
     const Result& result = found.results[i];
-    const motion::Motion clip =
-        motion::resample(motion::to_motion(motion::read_bvh(folder / result.path)), rate);
+    motion::ClipOptions whole = args.clips;
+    whole.first_frame = motion::FirstFrame::keep;  // times count from the start of the file
+    motion::Motion clip = motion::read_motion(folder / result.path, whole).motion;
+    clip = motion::resample(motion::scaled(clip, motion::scale_to(format.skeleton(), clip.skeleton)), rate);
     const std::size_t count = motion::resampled_frames(format.frames, format.rate, rate);
     const std::size_t first =
         std::min(static_cast<std::size_t>(std::lround(result.begin * rate)), clip.frames - 1);
@@ -188,8 +216,9 @@ int search(const SearchArgs& args) {
   const motion::MotionFormat& format = model.format();
   warn_of_unknown_words(format.vocabulary, args.text);
   // The index is read while the device generates the hypotheses.
-  auto opened = std::async(std::launch::async,
-                           [&] { return open_search_collection(args.collection, format, args.index); });
+  auto opened = std::async(std::launch::async, [&] {
+    return open_search_collection(args.collection, format, args.index, args.clips);
+  });
   GenerateOptions options;
   options.count = args.hypotheses;
   options.seed = args.seed;
@@ -199,7 +228,8 @@ int search(const SearchArgs& args) {
   if (collection.written)
     fmt::print(stderr, "index {}: {} read, {} kept, {} removed\n", collection.file.string(),
                counted(collection.read, "file"), collection.kept, collection.removed);
-  const Found found = find(model, args, collection, std::move(hypotheses));
+  const auto captions = read_captions(collection.index, args);
+  const Found found = find(model, args, collection, captions, std::move(hypotheses));
   if (args.json != "-") print_results(found, args, format);
   if (!args.json.empty()) {
     // Replaces what is not UTF-8 in a path, so that the rest can still be written.
@@ -241,7 +271,7 @@ const Verb search_verb{
           ->required()
           ->type_name("MODEL");
       option("--text", args->text, "description of the motion to find")->required()->type_name("TEXT");
-      option("--collection", args->collection, "folder of BVH clips of the model's skeleton, or one file")
+      option("--collection", args->collection, "folder of clips of the model's skeleton, or one file")
           ->required()
           ->type_name("DIR");
       option("--hypotheses", args->hypotheses, "motions to generate for the text")
@@ -255,9 +285,11 @@ const Verb search_verb{
                      "list windows instead of clips; a clip may then appear more than once");
       option("--hop", args->hop, "frames between two windows of a clip, at the model's rate [half a window]")
           ->check(positive());
-      option("--captions", args->captions, "captions to show with the clips [captions.tsv in the folder]")
-          ->check(CLI::ExistingFile)
+      option("--captions", args->captions,
+             "captions to show with the clips [captions.tsv, .csv or .json in the folder, else .txt files]")
+          ->check(CLI::ExistingPath)
           ->type_name("FILE");
+      add_reading_options(*verb, args->clips, false);
       option("--index", args->index, "where the collection's index is kept")->type_name("FILE");
       option("--json", args->json, "also write the results as JSON; -: to the terminal instead of the table")
           ->type_name("FILE");

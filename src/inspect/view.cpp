@@ -1,7 +1,7 @@
 // motiongan view: shows clips as stick figures on an HTML page or in a picture.
-#include "motiongan/data/clip_source.hpp"
-#include "motiongan/formats/bvh.hpp"
+#include "motiongan/io/safetensors.hpp"
 #include "motiongan/motion/motion.hpp"
+#include "shared/clip_reading.hpp"
 #include "shared/show.hpp"
 
 namespace motiongan::command {
@@ -11,19 +11,23 @@ struct ViewArgs {
   std::vector<std::string> files;
   std::string html, png;
   double rate = 0;
+  motion::ClipOptions clips{.first_frame = motion::FirstFrame::keep};
 };
 
 int view_clips(ViewArgs args) {
   std::vector<view::ViewedMotion> motions;
   for (const std::string& given : args.files) {
-    const std::vector<fs::path> found = motion::find_clip_files(given);
-    for (const fs::path& file : found) {
-      motion::Motion motion = motion::to_motion(motion::read_bvh(file));
-      if (args.rate > 0) motion = motion::resample(motion, args.rate);
-      fmt::print("{}: {} at {} per second, {}\n", file.string(), counted(motion.frames, "frame"),
-                 brief(motion.rate), duration(static_cast<double>(motion.frames) / motion.rate));
-      motions.push_back({file.stem().string(), std::move(motion)});
-    }
+    require(motion::extension_of(given) != ".safetensors", given,
+            " is a model; generate motion with it first: ", program(), " generate ", given,
+            " --text TEXT (or --class NAME) --html page.html");
+    for_each_clip(
+        given, args.clips, [&](const fs::path& file, const std::string&, motion::LoadedMotion&& loaded) {
+          motion::Motion motion = std::move(loaded.motion);
+          if (args.rate > 0) motion = motion::resample(motion, args.rate);
+          fmt::print("{}: {} at {} per second, {}\n", file.string(), counted(motion.frames, "frame"),
+                     brief(motion.rate), duration(static_cast<double>(motion.frames) / motion.rate));
+          motions.push_back({file.stem().string(), std::move(motion)});
+        });
   }
   if (args.html.empty() && args.png.empty()) args.html = "view.html";
   if (!args.html.empty())
@@ -35,9 +39,11 @@ int view_clips(ViewArgs args) {
 
 const Verb view_verb{
     "view", [](CLI::App& app, Job& job) {
-      CLI::App* verb = app.add_subcommand("view", "Show BVH clips side by side as stick figures");
+      CLI::App* verb = app.add_subcommand("view", "Show clips side by side as stick figures");
       const auto args = std::make_shared<ViewArgs>();
-      verb->add_option("FILES", args->files, "BVH files, or folders of them")->required()->type_name("");
+      verb->add_option("FILES", args->files, "motion files (BVH, AMC, NPZ, NPY, CSV), or folders of them")
+          ->required()
+          ->type_name("");
       verb->add_option("--html", args->html, "HTML page to write [view.html, unless --png is given]")
           ->type_name("FILE");
       verb->add_option("--png", args->png, "picture to write: a row of poses for each clip")
@@ -45,6 +51,7 @@ const Verb view_verb{
       verb->add_option("--rate", args->rate, "frames per second to show [each clip's own]")
           ->type_name("HZ")
           ->check(CLI::Range(1e-3, 1e4));
+      add_reading_options(*verb, args->clips, true);
       verb->callback([&job, args] { job = [args] { return view_clips(*args); }; });
     }};
 

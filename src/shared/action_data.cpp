@@ -3,12 +3,14 @@
 #include <cmath>
 
 #include "motiongan/procedural/procedural.hpp"
+#include "shared/clip_reading.hpp"
 #include "train/run_start.hpp"
 
 namespace motiongan::command {
 
 void add_action_data_options(CLI::App& verb, ActionDataArgs& a, bool windows) {
-  verb.add_option("FOLDER", a.folder, "folder of BVH, CSV or NPY clips (searched recursively)")
+  verb.add_option("FOLDER", a.folder,
+                  "folder of motion files (BVH, AMC, NPZ, NPY, CSV; searched recursively)")
       ->type_name("");
   std::vector<std::string_view> without{"folder"};
   if (!windows) without.insert(without.end(), {"frames", "rate", "root_track"});
@@ -23,14 +25,15 @@ void fill_in_choices(ActionDataArgs& a) {
   };
   const bool labelled = !o.labels.empty() || o.folders || o.pattern.find("{label}") != std::string::npos;
   if (a.procedural > 0) {
-    require(!labelled && o.bones.empty(),
+    require(!labelled && o.clips.bones.empty(),
             "--procedural has labels of its own: leave out --labels, --folders, --pattern and --bones");
   } else if (!labelled && fs::is_regular_file(fs::path(a.folder) / "labels.tsv")) {
     o.labels = fs::path(a.folder) / "labels.tsv";
   }
   if (!a.folder.empty()) a.folder = fs::absolute(a.folder).lexically_normal().string();
   absolute(o.labels);
-  absolute(o.bones);
+  absolute(o.clips.bones);
+  absolute(o.clips.skeleton_of);
 }
 
 void take_data_of_run(ActionDataArgs& args, const CLI::App& verb, const fs::path& run, const char* remedy) {
@@ -78,6 +81,8 @@ void print_data(const motion::ActionDataset& data, const ActionDataArgs& args) {
     if (n > 0) clips += fmt::format("; {} left out, {}", n, why);
   };
   left_out(data.skipped.size(), "shorter than " + duration(window));
+  left_out(data.bad.size(), "that cannot be read");
+  left_out(data.other_skeletons.size(), "of other skeletons");
   left_out(data.unlabelled, "without a label");
   left_out(data.other_classes, "of other classes");
   print_fact("clips", clips);
@@ -101,8 +106,11 @@ void print_data(const motion::ActionDataset& data, const ActionDataArgs& args) {
                          format.skeleton().joints.front().name, counted(format.dof(), "value"),
                          format.layout.root_track() ? ", including the root's steps, turns and height"
                                                     : "; the root stays in place"));
+  print_fact("space", describe(format.space));
   if (data.dropped_frames > 0)
     print_fact("first frame", counted(data.dropped_frames, "frame") + " dropped at the start of clips");
+  print_skipped(data.bad);
+  print_notes(data.notes);
 }
 
 }  // namespace motiongan::command

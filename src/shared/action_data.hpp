@@ -11,9 +11,8 @@ struct ActionDataArgs {
   motion::ActionDatasetOptions options;
 
   void list_fields(FieldList& list) {
-    list.add(folder, {.key = "folder",
-                      .help = "folder of BVH, CSV or NPY clips (searched recursively)",
-                      .option = "FOLDER"});
+    list.add(folder,
+             {.key = "folder", .help = "folder of motion files (searched recursively)", .option = "FOLDER"});
     list.add(procedural, {.key = "procedural",
                           .help = "instead of FOLDER: number of clips of built-in motion, labelled by action",
                           .type = "CLIPS"});
@@ -23,7 +22,8 @@ struct ActionDataArgs {
 
 /// Options that describe the clips themselves; other clips need their own.
 inline const std::vector<std::string_view> options_of_action_clips{
-    "--labels", "--folders", "--pattern", "--bones", "--test-subjects", "--classes"};
+    "--labels", "--folders", "--pattern", "--bones",       "--test-subjects", "--classes",
+    "--up",     "--scale",   "--fps",     "--unit-metres", "--skeleton-of"};
 
 /// Adds FOLDER and the options of labels and split; with `windows`, also --frames, --rate and --root.
 void add_action_data_options(CLI::App& verb, ActionDataArgs& args, bool windows);

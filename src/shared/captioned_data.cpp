@@ -1,6 +1,8 @@
 #include "shared/captioned_data.hpp"
 
 #include "motiongan/procedural/procedural.hpp"
+#include "shared/caption_report.hpp"
+#include "shared/clip_reading.hpp"
 #include "train/run_start.hpp"
 
 namespace motiongan::command {
@@ -15,15 +17,39 @@ void add_clip_options(CLI::App& verb, CaptionedDataArgs& a, const char* folder) 
   verb.get_option("--procedural")->expected(0, 1)->default_str(std::to_string(default_clips));
 }
 
+void print_captions(const motion::Dataset& data, const CaptionedDataArgs& args) {
+  const std::size_t used = data.train.size() + data.test.size();
+  const bool from_file = !args.data.captions.empty();
+  if (args.procedural > 0 && !from_file)
+    print_fact("captions", "those of the built-in motion");
+  else if (data.captions.source.empty())
+    print_fact("captions", fmt::format("taken from file names ({})", no_captions_found));
+  else
+    print_fact("captions",
+               fmt::format("from {}{}", from_file ? shown(args.data.captions) : data.captions.source,
+                           data.named == 0 ? std::string()
+                                           : fmt::format("; {} of {} captioned by file names", data.named,
+                                                         counted(used, "clip"))));
+  for (const std::string& remark : caption_remarks(data.captions)) print_fact("", remark);
+  if (data.parts == 0) return;
+  std::string text = counted(data.parts, "part") + " with captions of their own";
+  if (data.described_in_parts > 0)
+    text +=
+        fmt::format("; {} left out, covered by such parts", counted(data.described_in_parts, "whole clip"));
+  print_fact("", text);
+}
+
 }  // namespace
 
 void add_test_clip_options(CLI::App& verb, CaptionedDataArgs& a) {
-  add_clip_options(verb, a, "folder of BVH clips to use instead of those of the run");
-  add_options(verb, fields_of(a), "Options", {.only = {"train_share", "split_seed"}});
+  add_clip_options(verb, a, "folder of clips to use instead of those of the run");
+  add_options(verb, fields_of(a), "Options",
+              {.only = {"up", "scale", "fps", "first_frame", "bones", "skip_bad", "skeleton_of",
+                        "normalise_height", "train_share", "split_seed"}});
 }
 
 void add_captioned_data_options(CLI::App& verb, CaptionedDataArgs& a) {
-  add_clip_options(verb, a, "folder of BVH clips (searched recursively), or one clip");
+  add_clip_options(verb, a, "folder of motion files (searched recursively), or one clip");
   add_options(verb, fields_of(a), "Data", {.without = {"folder", "procedural", "captions"}});
 }
 
@@ -38,6 +64,8 @@ void fill_in_data(CaptionedDataArgs& a, motion::RootRotation root_rotation) {
     a.folder = fs::absolute(a.folder).lexically_normal().string();
     if (!captions.empty()) a.data.captions = fs::absolute(captions).lexically_normal();
   }
+  for (fs::path* path : {&a.data.clips.bones, &a.data.clips.skeleton_of})
+    if (!path->empty()) *path = fs::absolute(*path).lexically_normal();
   if (!a.data.root_rotation) a.data.root_rotation = root_rotation;
 }
 
@@ -75,33 +103,28 @@ void print_data(const motion::Dataset& data, const CaptionedDataArgs& args) {
       fmt::format("{} for training, {} held out for testing", data.train.size(), data.test.size());
   if (!data.skipped.empty())
     clips += fmt::format("; {} left out, shorter than {}", data.skipped.size(), duration(window));
+  if (!data.bad.empty()) clips += fmt::format("; {} that cannot be read", data.bad.size());
+  if (!data.other_skeletons.empty())
+    clips += fmt::format("; {} of other skeletons", data.other_skeletons.size());
   print_fact("clips", clips);
   print_fact("windows",
              fmt::format("{} for training, of {} frames at {} per second ({})", windows(data.train),
                          format.frames, brief(format.rate), duration(window)));
-  const std::size_t used = data.train.size() + data.test.size();
-  if (args.procedural > 0)
-    print_fact("captions", "those of the built-in motion");
-  else if (args.data.captions.empty())
-    print_fact("captions", "taken from file names (no captions.tsv in the folder, no --captions)");
-  else
-    print_fact("captions",
-               fmt::format("from {}{}", shown(args.data.captions),
-                           data.named == 0 ? std::string()
-                                           : fmt::format("; {} of {} are not in it and are captioned by "
-                                                         "their file names",
-                                                         data.named, counted(used, "clip"))));
+  print_captions(data, args);
   print_fact("words", fmt::format("{} in the training captions", format.vocabulary.size() - 1));
   print_fact("skeleton",
              fmt::format("{}, root {}; {} per pose vary{}", counted(format.skeleton().size(), "joint"),
                          format.skeleton().joints[format.layout.root()].name, counted(format.dof(), "value"),
                          format.layout.root_position() ? ", including the root's position" : ""));
+  print_fact("space", describe(format.space));
   if (data.dropped_frames > 0)
-    print_fact(
-        "first frame",
-        fmt::format(
-            "{} dropped at the start of clips{}", counted(data.dropped_frames, "frame"),
-            args.data.first_frame == motion::FirstFrame::automatic ? " (a T-pose before the motion)" : ""));
+    print_fact("first frame",
+               fmt::format("{} dropped at the start of clips{}", counted(data.dropped_frames, "frame"),
+                           args.data.clips.first_frame == motion::FirstFrame::automatic
+                               ? " (a T-pose before the motion)"
+                               : ""));
+  print_skipped(data.bad);
+  print_notes(data.notes);
 }
 
 }  // namespace motiongan::command

@@ -12,7 +12,7 @@ struct CaptionedDataArgs {
 
   void list_fields(FieldList& list) {
     list.add(folder, {.key = "folder",
-                      .help = "folder of BVH clips (searched recursively), or one clip",
+                      .help = "folder of motion files (searched recursively), or one clip",
                       .option = "FOLDER"});
     list.add(procedural, {.key = "procedural",
                           .help = "instead of FOLDER: number of clips of built-in motion",
@@ -22,7 +22,8 @@ struct CaptionedDataArgs {
 };
 
 /// Options that belong to one folder of clips; another folder needs its own.
-inline const std::vector<std::string_view> options_of_captioned_clips{"--captions"};
+inline const std::vector<std::string_view> options_of_captioned_clips{
+    "--captions", "--up", "--scale", "--fps", "--unit-metres", "--bones", "--skeleton-of"};
 
 /// Adds FOLDER and the options of the data to a verb.
 void add_captioned_data_options(CLI::App& verb, CaptionedDataArgs& args);

@@ -127,12 +127,13 @@ inline void make_folder_of(const fs::path& file) {
   if (file.has_parent_path()) make_folder(file.parent_path());
 }
 
-/// The caption file for a folder of clips: `given`, or else captions.tsv in the folder if it exists, or else
-/// empty.
+/// The caption file for a folder of clips: `given`, or else captions.tsv, .csv or .json in the folder, or
+/// else empty, for captions in .txt files beside the clips.
 inline fs::path captions_for(const fs::path& folder, const fs::path& given) {
   if (!given.empty()) return given;
-  const fs::path beside = folder / "captions.tsv";
-  return fs::is_regular_file(beside) ? beside : fs::path();
+  for (const char* name : {"captions.tsv", "captions.csv", "captions.json"})
+    if (fs::is_regular_file(folder / name)) return folder / name;
+  return {};
 }
 
 }  // namespace motiongan::command

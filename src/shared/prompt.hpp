@@ -3,6 +3,7 @@
 #include <set>
 
 #include "motiongan/data/vocabulary.hpp"
+#include "motiongan/formats/tab_lines.hpp"
 #include "motiongan/formats/text_file.hpp"
 #include "motiongan/train/run.hpp"
 #include "shared/command.hpp"
@@ -22,6 +23,22 @@ inline fs::path model_file(const fs::path& given) {
 inline void check_text(const std::string& text) {
   require(!motion::split_words(text).empty(), "--text \"", text, "\" has no words; describe a motion");
   require(motion::is_utf8(text), "the text \"", text, "\" is not UTF-8");
+}
+
+/// The texts of a file, one per line; blank lines and lines that start with # are skipped. Throws Error as
+/// `file:line: ...` for a text without words or that is not UTF-8, and if there is none.
+inline std::vector<std::string> read_prompts(const fs::path& file) {
+  const std::string name = file.string(), all = motion::read_text(file, "prompt file");
+  std::vector<std::string> texts;
+  motion::for_each_line(all, name, [&](const motion::TextLine& line) {
+    require(motion::is_utf8(line.raw), name, ":", line.number,
+            ": found text that is not UTF-8; save the file as UTF-8");
+    require(!motion::split_words(line.text).empty(), name, ":", line.number, ": \"", line.text,
+            "\" has no words; describe a motion");
+    texts.emplace_back(line.text);
+  });
+  require(!texts.empty(), name, " has no prompts; write one per line");
+  return texts;
 }
 
 /// A file name for a text: its words joined by dashes, at most 60 bytes.

@@ -72,7 +72,7 @@ TEST_CASE("search, with a model of two iterations") {
       CHECK_MESSAGE(said.has(why), said.text);
     };
     fs::create_directories("none");
-    refused("--model run --text walk --collection none", "have no .bvh file");
+    refused("--model run --text walk --collection none", "have no .bvh, .amc");
     refused("--model run --text walk --collection absent", "absent does not exist");
     refused("--model run --text '...' --collection clips", "has no words");
     Clip other = read_bvh("clips/walk_000.bvh");

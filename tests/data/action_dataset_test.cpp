@@ -216,7 +216,7 @@ TEST_CASE("from a folder: BVH, CSV and NPY with labels from a file, folders or n
   }
   write_bone_list(folder.path / "list.tsv", motions[0].motion.skeleton);
   ActionDatasetOptions options;
-  options.bones = folder.path / "list.tsv";
+  options.clips.bones = folder.path / "list.tsv";
   CHECK_THROWS_WITH_AS((void)ActionDataset::from_folder(folder.path, options),
                        doctest::Contains("there are no labels"), Error);
 

@@ -35,9 +35,9 @@ double worst_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 /// Positions of a file by forward kinematics round-trip through poses, over places and over a track; no turn
 /// exceeds `most` radians per frame.
 void check_round_trip(const fs::path& file, double most) {
-  Clip clip = read_bvh(file);
-  drop_first_frames(clip, FirstFrame::automatic);
-  const PositionClip positions = positions_of(to_motion(clip), clip.id, 30);
+  Motion motion = to_motion(read_bvh(file));
+  drop_first_frames(motion, FirstFrame::automatic);
+  const PositionClip positions = positions_of(motion, file.stem().string(), 30);
   const PositionLayout layout(positions.skeleton, true);
   const std::vector<double> poses = layout.encode(positions.positions);
   const std::vector<RootTrack> places = layout.places(positions.positions);

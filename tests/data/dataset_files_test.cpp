@@ -65,7 +65,7 @@ TEST_CASE("the split is seeded, complete, and written to a file") {
 
 TEST_CASE("folders of BVH files") {
   const Folder folder;
-  CHECK_THROWS_WITH_AS(Dataset::from_bvh(folder.path), doctest::Contains("no .bvh file"), Error);
+  CHECK_THROWS_WITH_AS(Dataset::from_bvh(folder.path), doctest::Contains("no .bvh, .amc"), Error);
   CHECK_THROWS_WITH_AS(Dataset::from_bvh(folder.path / "none"), doctest::Contains("does not exist"), Error);
   for (const char* name : {"a/walk.bvh", "b/walk.BVH", "jump_01.bvh", "b/run/07.bvh"}) {
     const fs::path path = folder.path / name;
@@ -91,7 +91,7 @@ TEST_CASE("folders of BVH files") {
   write_text_atomically(folder.path / "captions.tsv",
                         "walk\tgo ahead\nb/walk\tgo back\nb/walk\treturn\njump_01\tleap\n");
   options.captions = folder.path / "captions.tsv";
-  options.first_frame = FirstFrame::keep;
+  options.clips.first_frame = FirstFrame::keep;
   const Dataset told = Dataset::from_bvh(folder.path, options);
   CHECK(told.named == 1);
   CHECK(told.dropped_frames == 0);

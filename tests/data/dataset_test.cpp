@@ -138,18 +138,17 @@ TEST_CASE("captions become sentences of the training vocabulary") {
 
 TEST_CASE("clips must share one skeleton, but not bone lengths") {
   auto motions = several(3);
-  motions[1].motion.skeleton.joints[1].offset = {7, 0, 0};
+  motions[1].motion.skeleton.joints[1].offset = {1.4, 0, 0};
   CHECK(Dataset::from_motions(motions, eight_at(4)).format.skeleton().joints[1].offset == Vec3{1, 0, 0});
   motions[2].motion.skeleton.joints[1].name = "Leg";
   CHECK_THROWS_WITH_AS(
       Dataset::from_motions(motions, eight_at(4)),
-      doctest::Contains("clip 'clip2' has a different skeleton (2 joints, expected 2): 'Arm' is called "
-                        "'Leg'. A data set needs one skeleton, that of clip 'clip0'"),
+      doctest::Contains("the clips have 2 different skeletons:\n  2 clips of 2 joints: 'clip0', 'clip1'\n  1 "
+                        "clip of 2 joints: 'clip2'; compared with the first: 'Arm' is called 'Leg'"),
       Error);
   motions = several(2);
   motions[1].motion.skeleton.joints[1].channels.pop_back();
-  CHECK_THROWS_WITH_AS(Dataset::from_motions(motions, eight_at(4)), doctest::Contains("different channels"),
-                       Error);
+  CHECK(Dataset::from_motions(motions, eight_at(4)).format.skeleton() == motions[0].motion.skeleton);
   motions = several(2);
   Motion& more = motions[1].motion;
   more.skeleton.joints.push_back({"Tail", 0, {0, 0, 1}, {}, {}});

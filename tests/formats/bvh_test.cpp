@@ -143,7 +143,9 @@ TEST_CASE("broken files: the place, what was found, what was expected") {
       {"OFFSET 0 1.5 -2e0", "OFFSET 0 1.5", ":5:3:", {"found 'CHANNELS'", "the z of an OFFSET"}},
       {"OFFSET 1 0 0", "OFFSET 1 0 0\n    OFFSET 1 0 0", ":9:5:", {"second OFFSET"}},
       {"1.5 -2e0", "1,5 -2e0", ":4:12:", {"found '1,5'", "the y of an OFFSET"}},
-      {"CHANNELS 6", "CHANNELS 7", ":5:12:", {"7 channels", "at most 6"}},
+      {"CHANNELS 6", "CHANNELS 10", ":5:12:", {"10 channels", "at most 9"}},
+      {"CHANNELS 6", "CHANNELS 7", ":6:3:", {"found 'JOINT'", "channel 7 of 7"}},
+      {"6 Xposition Yposition", "7 Xscale Xscale Yposition", ":5:21:", {"'Xscale' a second time", "scale"}},
       {"CHANNELS 6", "CHANNELS 5", ":5:64:", {"found 'Xrotation'", "only 5 channels"}},
       {"CHANNELS 1", "CHANNELS 2", ":10:5:", {"found 'End'", "channel 2 of 2", "'Arm'"}},
       {"CHANNELS 1", "CHANNELS -1", ":9:14:", {"found '-1'", "number of channels"}},
@@ -155,23 +157,15 @@ TEST_CASE("broken files: the place, what was found, what was expected") {
        "JIONT Arm",
        ":6:3:",
        {"found 'JIONT'", "expected OFFSET, CHANNELS, JOINT, End Site or }"}},
-      {"JOINT Arm", "JOINT Hips", ":6:9:", {"second joint called 'Hips'"}},
       {"End Site", "End Seat", ":10:9:", {"found 'Seat'", "expected Site"}},
       {"OFFSET 2 0 0", "CHANNELS 0", ":12:7:", {"found 'CHANNELS'", "expected OFFSET"}},
       {"}\nMOTION", "MOTION", ":15:1:", {"found 'MOTION' in joint 'Hips'"}},
       {"}\nMOTION", "}\nROOT Dog\n{\n", ":16:1:", {"second ROOT"}},
       {"MOTION", "MOTIONS", ":16:1:", {"found 'MOTIONS'", "expected MOTION"}},
       {"Frames:", "Frame:", ":17:1:", {"expected 'Frames:'"}},
-      {"Frames: 2", "Frames: 3", ":21:1:", {"after 2 frames", "expected 3"}},
-      {"Frames: 2", "Frames: 1", ":20:1:", {"found frame 2", "expected 1"}},
       {"Frames: 2", "Frames: -2", ":17:9:", {"found '-2'", "number of frames"}},
       {"Frames: 2", "Frames: 2.5", ":17:9:", {"found '2.5'"}},
       {"Frames: 2", "Frames: 99999999999999999999999", ":17:9:", {"number of frames"}},
-      {"Frames: 2",
-       "Frames: 18446744073709551615",
-       ":21:1:",
-       {"after 2 frames", "expected 18446744073709551615"}},
-      {"Frames: 2", "Frames: 1000000000000", ":21:1:", {"after 2 frames", "expected 1000000000000"}},
       {"Frame Time:", "FrameTime", ":18:1:", {"expected 'Frame Time:'"}},
       {"0.0333333", "0", ":18:13:", {"frame time of 0 "}},
       {"0.0333333", "-0.04", ":18:13:", {"frame time of -0.04"}},
@@ -204,11 +198,9 @@ TEST_CASE("broken files: the place, what was found, what was expected") {
   }
 }
 
-TEST_CASE("a truncated file is an error, never a crash; so is any single corrupted byte") {
-  const std::size_t last_digit = arm.size() - 1;
-  for (std::size_t n = 0; n < arm.size(); ++n) {
-    // Cutting digits off the last number leaves a valid file.
-    if (n > arm.rfind("-179") + 1 && n <= last_digit) continue;
+TEST_CASE("a file truncated before a frame is an error, never a crash; so is any single corrupted byte") {
+  const std::size_t first_frame = arm.find("30 40\n") + 4;  // with one digit of its last value
+  for (std::size_t n = 0; n < first_frame; ++n) {
     CAPTURE(n);
     CHECK_THROWS_AS(parse_bvh(arm.substr(0, n), "cut"), Error);
   }
@@ -300,7 +292,7 @@ TEST_CASE("files are written atomically and read back, and errors name the path"
 
 TEST_CASE("skeletons that BVH cannot hold are rejected") {
   Skeleton s = parse_bvh(arm, "arm").skeleton;
-  for (const char* name : {"", " a", "a ", "a\nb", "{a", "a{", "a {b"}) {
+  for (const char* name : {"", " a", "a ", "a\nb", "a\rb", "{a", "a{", "a {b"}) {
     s.joints[1].name = name;
     CHECK_THROWS_WITH_AS(format_hierarchy(s), doctest::Contains("cannot be written as BVH"), Error);
   }

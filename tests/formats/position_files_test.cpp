@@ -135,6 +135,40 @@ TEST_CASE("CSV: columns in any order, times, CRLF") {
             .rate == 120);
 }
 
+TEST_CASE("CSV: semicolons and tabs as separators, and the line ends of old programs") {
+  const Skeleton s = parse_bone_list("A\t-\nB\tA\n", "s");
+  const std::string text = "time,A.x,A.y,A.z,B.x,B.y,B.z\n0,1,2,3,4,5,6.5\n0.04,1,2,3,4,5,7\n";
+  const PositionClip clip = parse_position_csv(text, s, 0, "c");
+  for (const char separator : {';', '\t'}) {
+    std::string other = text;
+    for (char& c : other)
+      if (c == ',') c = separator;
+    const PositionClip same = parse_position_csv(other, s, 0, "c");
+    CHECK(same.rate == 25);
+    CHECK(same.positions == clip.positions);
+    const std::size_t at = other.find("6.5");
+    other[at + 1] = ',';
+    CHECK(message_of([&] { parse_position_csv(other, s, 0, "c"); }) ==
+          "c:2: found '6,5' in column 7 (joint 'B'), expected a finite number with a decimal point, not a "
+          "decimal comma: write 1.5, not 1,5");
+  }
+  std::string mac = text;
+  for (char& c : mac)
+    if (c == '\n') c = '\r';
+  CHECK(parse_position_csv(mac, s, 0, "c").positions == clip.positions);
+}
+
+TEST_CASE("a position file is told from a log by its first line") {
+  for (const char* const text : {"time,Hips.x,Hips.y,Hips.z\n0,0,90,0\n", "A.x,A.y,A.z",
+                                 "\xEF\xBB\xBF"
+                                 "A.z;A.y;A.x\r\n",
+                                 "A.x\tA.y\tA.z\r1", "time,a.b.x,a.b.y,a.b.z,extra\n"})
+    CHECK(is_position_csv(text));
+  for (const char* const text : {"", "\n", "iteration,loss,critic_loss\n1,2,3\n", "time,A.x,A.y\n", "x,y,z\n",
+                                 ".x,.y,.z\n", "iteration\nA.x,A.y,A.z\n", "a,b,c,d,e,f,A.x,A.y,A.z\n"})
+    CHECK_FALSE(is_position_csv(text));
+}
+
 TEST_CASE("invalid CSV is an error with its line") {
   const Skeleton s = parse_bone_list("A\t-\nB\tA\n", "s");
   const std::string header = "A.x,A.y,A.z,B.x,B.y,B.z\n";
@@ -152,6 +186,7 @@ TEST_CASE("invalid CSV is an error with its line") {
   CHECK(says(wrong(header + "1,2,3,4,1e999,6\n"), "c:2: found '1e999' in column 5"));
   CHECK(says(wrong(header + "1,2,,4,5,6\n"), "c:2: found '' in column 3 (joint 'A')"));
   CHECK(says(wrong(header + "1,2,3,4,5,6\n", 0), "the rate is 0"));
+  CHECK(says(wrong(header + "1,2,3,4,5,6\n", 0), "--rate or --fps on the command line"));
   CHECK(says(wrong("time," + header + "0,1,2,3,4,5,6\n", 0),
              "the rate is 0"));  // a single frame has no time step
   const std::string row = ",1,2,3,4,5,6\n";
@@ -211,6 +246,8 @@ TEST_CASE("invalid NPY is an error that says what was found") {
       says(wrong(npy(header("'<f4'", "(3, 6)"), data)), "found 48 bytes of numbers, expected 3 frames x 6"));
   CHECK(says(wrong(npy("{'descr': '<f4', 'shape': (2, 6)}\n", data)), "no entry 'fortran_order'"));
   CHECK(says(wrong(npy(header("'<f4'", "(2, 6)"), data), 0), "the rate is 0"));
+  CHECK(says(wrong(npy(header("'<f4'", "(2, 6)"), data), 0),
+             "give --rate or --fps on the command line, the argument `rate` in the API"));
   std::string bad = data;
   bad.replace(32, 4, {"\0\0\x80\x7f", 4});  // number 9 of 12 is infinite
   CHECK(says(wrong(npy(header("'<f4'", "(2, 6)"), bad)), "n: frame 2, joint 'A': found inf"));
@@ -239,6 +276,19 @@ TEST_CASE("files round-trip, and the bone list next to them is found") {
     for (std::size_t k = 0; k < 3; ++k)
       CHECK(c.positions[i][k] == doctest::Approx(clip.positions[i][k]).epsilon(1e-7));
   CHECK(says(read_text(folder.path / "leg.csv", "file"), "time,Hip.x,Hip.y,Hip.z,Knee.x,"));
+
+  fs::copy_file(folder.path / "leg.npy", folder.path / "UPPER.NPY");
+  fs::copy_file(folder.path / "leg.csv", folder.path / "UPPER.CSV");
+  CHECK(read_position_file(folder.path / "UPPER.NPY", {}, 30).positions == clip.positions);
+  CHECK(read_position_file(folder.path / "UPPER.CSV", {}, 0).positions == c.positions);
+  for (const char* const name : {"empty.csv", "empty.npy"}) {
+    write_text_atomically(folder.path / name, "");
+    CHECK(says(message_of([&] { read_position_file(folder.path / name, {}, 30); }),
+               concat(name, " is empty, expected joint positions")));
+  }
+  fs::create_symlink("gone.csv", folder.path / "dead.csv");
+  CHECK(says(message_of([&] { read_position_file(folder.path / "dead.csv", {}, 30); }),
+             "dead.csv is a dead link (to gone.csv)"));
 
   CHECK(says(message_of([&] { read_position_file(folder.path / "leg.txt", {}, 30); }), "ends in '.txt'"));
   CHECK(says(message_of([&] { read_position_file(folder.path / "no.csv", {}, 30); }), "does not exist"));

@@ -1,4 +1,4 @@
-// Forward kinematics on an arm computed by hand, bone lengths, the joint that travels, and folding into it.
+// Forward kinematics on an arm computed by hand, and bone lengths.
 #include "motiongan/motion/kinematics.hpp"
 
 #include <doctest/doctest.h>
@@ -68,51 +68,4 @@ TEST_CASE("a motion with inconsistent arrays is rejected") {
   m = arm(1);
   m.rate = 0;
   CHECK_THROWS_WITH_AS(forward_kinematics(m), doctest::Contains("rate is 0"), Error);
-}
-
-TEST_CASE("the travelling joint is found, and the joints above it are folded into it") {
-  // A resting world joint, rotated and displaced, above the arm.
-  Motion m = arm(3);
-  m.skeleton.joints.insert(m.skeleton.joints.begin(), {"World", -1, {1, 0, 0}, six, {}});
-  for (std::size_t j = 1; j < 4; ++j) m.skeleton.joints[j].parent = static_cast<int>(j) - 1;
-  m.rotations.assign(12, Quat{});
-  m.positions.clear();
-  for (std::size_t f = 0; f < 3; ++f)
-    for (const Joint& j : m.skeleton.joints) m.positions.push_back(j.offset);
-  CHECK(moving_root(m) == 0);  // nothing travels
-  for (std::size_t f = 0; f < 3; ++f) {
-    m.rotation(f, 0) = quat_from_expmap({0, pi / 2, 0});
-    m.position(f, 1) = {static_cast<double>(f), 1, 0};
-    m.rotation(f, 1) = quat_from_expmap({0.1 * static_cast<double>(f), 0.2, 0.3});
-  }
-  CHECK(moving_root(m) == 1);
-  const Motion folded = fold_into_root(m, 1);
-  REQUIRE(folded.skeleton.size() == 3);
-  CHECK(folded.skeleton.joints[0].name == "Shoulder");
-  CHECK(folded.skeleton.joints[0].parent == -1);
-  CHECK(folded.skeleton.joints[2].parent == 1);
-  CHECK(folded.skeleton.joints[0].offset == Vec3{1, 0, 0});
-  const GlobalPose before = forward_kinematics(m), after = forward_kinematics(folded);
-  for (std::size_t f = 0; f < 3; ++f)
-    for (std::size_t j = 0; j < 3; ++j) {
-      CHECK(near(after.positions[f * 3 + j], before.positions[f * 4 + j + 1]));
-      CHECK(angle_between(after.rotations[f * 3 + j], before.rotations[f * 4 + j + 1]) < 1e-14);
-    }
-  CHECK(moving_root(folded) == 0);
-  m.position(1, 0) = {5, 5, 5};
-  CHECK(moving_root(m) == 0);  // the world joint itself travels
-
-  // A root without position channels gets them; a second branch above it is an error.
-  m.skeleton.joints[1].channels = {Channel::y_rotation};
-  CHECK(fold_into_root(m, 1).skeleton.joints[0].channels == six);
-  m.skeleton.joints[3].parent = 0;
-  CHECK_THROWS_WITH_AS(fold_into_root(m, 1), doctest::Contains("'World' above it has other children"), Error);
-  CHECK_THROWS_AS(fold_into_root(m, 9), Error);
-}
-
-TEST_CASE("a root that rotates in place is the root") {
-  Motion m = arm(3);
-  for (std::size_t f = 0; f < 3; ++f)
-    m.rotation(f, 0) = quat_from_expmap({0, 0.5 * static_cast<double>(f), 0});
-  CHECK(moving_root(m) == 0);
 }

@@ -1,12 +1,10 @@
-// Channels to rotations and back, resampling, slicing, and T-poses at the start.
+// Channels to rotations and back, resampling, and slicing.
 #include "motiongan/motion/motion.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <vector>
-
-#include "motiongan/data/first_frame.hpp"
 
 using namespace motiongan;
 using namespace motiongan::motion;
@@ -80,6 +78,57 @@ TEST_CASE("frame times as printed in files") {
   CHECK_THROWS_AS(rate_from_frame_time(0), Error);
 }
 
+TEST_CASE("a rounded or cut frame time gives the standard rate that it stands for") {
+  const auto read_as = [](double frame_time, double rate) {
+    CAPTURE(frame_time);
+    CHECK(rate_from_frame_time(frame_time) == rate);
+    CHECK(!rate_note(frame_time).empty());
+  };
+  read_as(0.0333, 30);
+  read_as(0.033, 30);
+  read_as(0.0417, 24);
+  read_as(0.042, 24);
+  read_as(0.0416, 24);  // cut, not rounded
+  read_as(0.0083, 120);
+  read_as(0.0167, 60);
+  read_as(0.0166, 60);
+  read_as(0.0208, 48);
+  read_as(0.0139, 72);
+  read_as(0.0111, 90);
+  read_as(0.00694, 144);
+  read_as(0.00417, 240);
+  read_as(0.0334, 30000.0 / 1001);
+  read_as(0.033367, 30000.0 / 1001);
+  read_as(0.0333667, 30000.0 / 1001);
+  read_as(0.03336, 30000.0 / 1001);
+  read_as(0.04171, 24000.0 / 1001);
+  read_as(0.01668, 60000.0 / 1001);
+  read_as(0.008342, 120000.0 / 1001);
+  CHECK(rate_note(0.0333) == "frame time 0.0333 s is read as 30 frames per second (1/30 s to 4 decimals)");
+  CHECK(rate_note(0.033366667) ==
+        "frame time 0.033366667 s is read as 29.97 frames per second (1001/30000 s to 9 decimals)");
+
+  const auto its_own = [](double frame_time, double rate) {
+    CAPTURE(frame_time);
+    CHECK(rate_from_frame_time(frame_time) == rate);
+    CHECK(rate_note(frame_time).empty());
+  };
+  its_own(0.008, 125);
+  its_own(0.04, 25);
+  its_own(0.0333333, 30);
+  its_own(0.0042, 238);  // the integer within 0.05% comes first
+  its_own(0.0083333, 120);
+  its_own(0.03, 1 / 0.03);    // one digit
+  its_own(0.017, 1 / 0.017);  // 60 differs by 2%
+  its_own(0.035, 1 / 0.035);
+  its_own(0.08, 12.5);
+  its_own(30, 1.0 / 30);
+  its_own(1001.0 / 30000, 1 / (1001.0 / 30000));  // not rounded
+  its_own(1e-300, 1 / 1e-300);
+  CHECK(rate_note(0).empty());
+  CHECK(rate_note(std::nan("")).empty());
+}
+
 TEST_CASE("resampling: lengths, end points and interpolation") {
   const Motion slow = turning(5, 4, 0.3);  // one second
   const Motion fast = resample(slow, 60);
@@ -128,42 +177,4 @@ TEST_CASE("slices") {
   CHECK_THROWS_WITH_AS(slice(m, 8, 3), doctest::Contains("frames 8 to 11 of a motion of 10"), Error);
   CHECK_THROWS_AS(slice(m, 11, 0), Error);
   CHECK_THROWS_AS(slice(m, 2, static_cast<std::size_t>(-1)), Error);
-}
-
-TEST_CASE("a T-pose at the start is found and dropped") {
-  Clip clip;
-  clip.skeleton = two_joints({Channel::x_position, Channel::y_position, Channel::z_rotation},
-                             {Channel::z_rotation, Channel::x_rotation});
-  clip.frame_time = 0.01;
-  const auto with = [&](std::vector<std::vector<double>> frames) {
-    Clip c = clip;
-    c.frames = frames.size();
-    for (const auto& f : frames) c.channels.insert(c.channels.end(), f.begin(), f.end());
-    return c;
-  };
-  const std::vector<double> zero{1.5, 2.5, 0, 0, 0}, posed{1, 2, -21, 0, 0};
-  const std::vector<double> a{1, 2, 30.25, 0, 4.5}, b{1, 2, 30.5, 0.25, 4.5}, c{1, 2, 31, 0.25, 4.5};
-  CHECK(t_pose_frames(with({zero, a, b, c})) == 1);
-  CHECK(t_pose_frames(with({posed, a, b, c})) == 1);
-  CHECK(t_pose_frames(with({posed, zero, a, b, c})) == 2);  // as the CMU clip 07_12 has it
-  CHECK(t_pose_frames(with({a, b, c})) == 0);
-  CHECK(t_pose_frames(with({zero, zero, zero})) == 0);  // a clip at rest is no T-pose before a motion
-  CHECK(t_pose_frames(with({zero})) == 0);
-  CHECK(t_pose_frames(with({})) == 0);
-  CHECK(t_pose_frames(with({zero, zero, zero, zero, zero, a, b})) == 0);  // rests, then moves
-  CHECK(t_pose_frames(with({zero, {1, 2, 0.25, 0, 0.5}, {1, 2, 0.5, 0, 1}})) ==
-        0);  // starts smoothly from rest
-  CHECK(t_pose_frames(with({zero, {1, 2, 5.5, 0, 0}, {1, 2, 11, 0, 0}})) == 0);
-  CHECK(t_pose_frames(with({{1, 2, 1, 2, 3}, a, b})) == 0);  // whole numbers, but no T-pose
-
-  Clip dropped = with({posed, a, b});
-  CHECK(drop_first_frames(dropped, FirstFrame::keep) == 0);
-  CHECK(drop_first_frames(dropped, FirstFrame::automatic) == 1);
-  CHECK(dropped.frames == 2);
-  CHECK(dropped.channels == with({a, b}).channels);
-  CHECK(drop_first_frames(dropped, FirstFrame::automatic) == 0);
-  CHECK(drop_first_frames(dropped, FirstFrame::drop) == 1);
-  CHECK(dropped.channels == b);
-  CHECK(drop_first_frames(dropped, FirstFrame::drop) == 1);
-  CHECK(drop_first_frames(dropped, FirstFrame::drop) == 0);
 }

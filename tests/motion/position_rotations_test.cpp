@@ -17,6 +17,7 @@
 #include "motiongan/formats/bone_list.hpp"
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/motion/motion.hpp"
+#include "motiongan/motion/root_joint.hpp"
 #include "motiongan/procedural/procedural.hpp"
 
 using namespace motiongan;

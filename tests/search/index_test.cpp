@@ -194,7 +194,7 @@ TEST_CASE("an index that cannot be written is a warning; unusable files are name
   CHECK(found.warnings[0].find("give --index a writable FILE") != std::string::npos);
 
   const Folder bad;
-  CHECK_THROWS_WITH_AS(open_search_collection(bad.path, format), doctest::Contains("have no .bvh file"),
+  CHECK_THROWS_WITH_AS(open_search_collection(bad.path, format), doctest::Contains("have no .bvh, .amc"),
                        Error);
   std::ofstream(bad.path / "broken.bvh") << "HIERARCHY\nROOT";
   CHECK_THROWS_WITH_AS(open_search_collection(bad.path, format), doctest::Contains("broken.bvh"), Error);

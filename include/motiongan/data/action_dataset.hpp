@@ -40,14 +40,17 @@ class ActionDataset {
   ActionDatasetOptions options;
   std::vector<ActionClip> train;  ///< in file order
   std::vector<ActionClip> test;
-  std::vector<SkippedClip> skipped;  ///< clips that are too short
-  std::size_t unlabelled = 0;        ///< clips without a label
-  std::size_t other_classes = 0;     ///< clips whose class is not in options.classes
-  std::size_t dropped_frames = 0;    ///< T-pose frames removed from the starts of clips
+  std::vector<SkippedClip> skipped;          ///< clips that are too short
+  std::vector<SkippedClip> bad;              ///< files that could not be read, with clips.skip_bad
+  std::vector<SkippedClip> other_skeletons;  ///< clips left out by clips.skeleton_of
+  std::vector<std::string> notes;  ///< what was corrected or ignored in the clips used, one sentence each
+  std::size_t unlabelled = 0;      ///< clips without a label
+  std::size_t other_classes = 0;   ///< clips whose class is not in options.classes
+  std::size_t dropped_frames = 0;  ///< T-pose frames removed from the starts of clips
 
-  /// Loads all .bvh, .csv and .npy files in a folder and its subfolders, or one file. Throws Error for an
-  /// empty folder, unreadable files, different joints, no source of labels or several, no labelled clip, no
-  /// clip that is long enough, a class without a training clip, and an unknown subject or class in the
+  /// Loads all motion files (find_motion_files) in a folder and its subfolders, or one file. Throws Error for
+  /// an empty folder, unreadable files, different joints, no source of labels or several, no labelled clip,
+  /// no clip that is long enough, a class without a training clip, and an unknown subject or class in the
   /// options.
   static ActionDataset from_folder(const std::filesystem::path& folder_or_file,
                                    const ActionDatasetOptions& options);

@@ -14,6 +14,7 @@
 #include "motiongan/data/action_dataset.hpp"
 #include "motiongan/data/action_source.hpp"
 #include "motiongan/data/action_split.hpp"
+#include "motiongan/data/clip_agreement.hpp"
 #include "motiongan/data/clip_source.hpp"
 #include "motiongan/formats/bvh_writer.hpp"
 #include "motiongan/motion/skeleton_match.hpp"
@@ -85,13 +86,44 @@ inline std::vector<Chosen> choose(const std::vector<Source>& sources, const Acti
   return out;
 }
 
+/// The skeleton of the file that the options name, from its travelling joint down.
+inline Skeleton skeleton_of(const ActionDatasetOptions& o) {
+  return load_file(o.clips.skeleton_of, "", o, -1, {}).clip.skeleton;
+}
+
+/// Loads again what is not like the other clips: with one root joint, one up axis and, if asked for, one
+/// height. Throws Error if the clips cannot be used together.
+inline void make_alike(const std::vector<Source>& sources, const std::vector<Chosen>& chosen,
+                       std::vector<Loaded>& clips, ActionDataset& data) {
+  int root = 0;  // clips in which nothing travels have root 0
+  for (const Loaded& clip : clips) root = std::max(root, clip.root);
+  const auto load_again = [&](std::size_t i, const LoadChange& change) {
+    clips[i] = sources[chosen[i].source].load(root, change);
+  };
+  in_two_threads(clips.size(), [&](std::size_t i) {
+    if (clips[i].root != root) load_again(i, {});
+  });
+  std::vector<ClipFacts> facts;
+  for (const Loaded& clip : clips)
+    facts.push_back({clip.clip.id, &clip.clip.skeleton, clip.height, clip.up, clip.unit_metres});
+  data.format.space = space_of(facts, data.options.clips);
+  const std::vector<LoadChange> changes = agreed_changes(facts, data.options.clips, data.notes);
+  in_two_threads(clips.size(), [&](std::size_t i) {
+    if (changes[i].up || changes[i].scale != 1) load_again(i, changes[i]);
+  });
+  for (const Loaded& clip : clips) data.notes.insert(data.notes.end(), clip.notes.begin(), clip.notes.end());
+}
+
 /// Loads the chosen clips, all with one root joint, and removes those too short for a window; [chosen].
 inline std::vector<Loaded> load_all(const std::vector<Source>& sources, std::vector<Chosen>& chosen,
                                     ActionDataset& data) {
   const ActionDatasetOptions& o = data.options;
   std::vector<Loaded> clips(chosen.size());
-  const auto load = [&](std::size_t i, int root) { clips[i] = sources[chosen[i].source].load(root); };
-  in_two_threads(chosen.size(), [&](std::size_t i) { load(i, -1); });
+  const std::vector<std::string> errors = errors_in_two_threads(
+      chosen.size(), [&](std::size_t i) { clips[i] = sources[chosen[i].source].load(-1, {}); });
+  require_all_read(errors, o.clips.skip_bad);
+  Skeleton only;
+  if (!o.clips.skeleton_of.empty()) only = skeleton_of(o);
   const double needed = 2 * static_cast<double>(o.frames) / o.rate;
   std::vector<double> longest(data.format.classes.size(), 0);
   std::vector<bool> has_clip(data.format.classes.size(), false);
@@ -101,6 +133,14 @@ inline std::vector<Loaded> load_all(const std::vector<Source>& sources, std::vec
   std::vector<Loaded> kept_clips;
   for (std::size_t i = 0; i < clips.size(); ++i) {
     const std::string& id = sources[chosen[i].source].id;
+    if (!errors[i].empty()) {
+      data.bad.push_back({id, errors[i]});
+      continue;
+    }
+    if (only.size() > 0 && !have_same_joints(only, clips[i].clip.skeleton)) {
+      data.other_skeletons.push_back({id, some_of(joint_differences(only, clips[i].clip.skeleton), 4)});
+      continue;
+    }
     const double seconds = clips[i].seconds;
     longest[chosen[i].what.label] = std::max(longest[chosen[i].what.label], seconds);
     if (seconds >= longest_of_all) longest_of_all = seconds, longest_id = id;
@@ -126,15 +166,7 @@ inline std::vector<Loaded> load_all(const std::vector<Source>& sources, std::vec
   chosen = std::move(kept);
   clips = std::move(kept_clips);
 
-  int root = 0;  // clips in which nothing travels have root 0
-  for (const Loaded& clip : clips) root = std::max(root, clip.root);
-  in_two_threads(clips.size(), [&](std::size_t i) {
-    if (clips[i].root != root) load(i, root);
-  });
-  for (std::size_t i = 1; i < clips.size(); ++i)
-    require_same_joints(
-        clips.front().clip.skeleton, clips[i].clip.skeleton,
-        concat("clip '", clips[i].clip.id, "', compared with '", clips.front().clip.id, "',"));
+  make_alike(sources, chosen, clips, data);
   return clips;
 }
 
@@ -222,8 +254,8 @@ inline ActionDataset ActionDataset::from_folder(const std::filesystem::path& fol
   const std::vector<std::string> ids = clip_ids(files, folder_or_file);
   std::vector<detail::Source> sources;
   for (std::size_t i = 0; i < files.size(); ++i) {
-    const auto load = [file = files[i], id = ids[i], &options](int root) {
-      return detail::load_file(file, id, options, root);
+    const auto load = [file = files[i], id = ids[i], &options](int root, const LoadChange& change) {
+      return detail::load_file(file, id, options, root, change);
     };
     sources.push_back({ids[i], files[i].stem().string(), {}, load});
     if (options.folders) sources.back().label = label_from_folder(files[i], folder_or_file);
@@ -238,8 +270,9 @@ inline ActionDataset ActionDataset::from_motions(const std::vector<LabelledMotio
           "pattern");
   std::vector<action_dataset_detail::Source> sources;
   for (const LabelledMotion& m : motions) {
-    sources.push_back({m.id, m.id, {}, [&m, &options](int root) {
-                         return action_dataset_detail::load_motion(m.motion, m.id, options.rate, root);
+    sources.push_back({m.id, m.id, {}, [&m, &options](int root, const LoadChange& change) {
+                         return action_dataset_detail::load_motion(in_memory(m.motion, change), m.id,
+                                                                   options.rate, root);
                        }});
     if (!m.captions.empty()) sources.back().label = m.captions.front();
   }
@@ -253,8 +286,9 @@ inline ActionDataset ActionDataset::from_positions(const std::vector<PositionCli
           "folders is set, but clips in memory have no folders; expected labels by id or a pattern");
   std::vector<action_dataset_detail::Source> sources;
   for (const PositionClip& clip : clips)
-    sources.push_back({clip.id, clip.id, {}, [&clip, &options](int) {
-                         return action_dataset_detail::load_positions(clip, options.rate);
+    sources.push_back({clip.id, clip.id, {}, [&clip, &options](int, const LoadChange& change) {
+                         return action_dataset_detail::load_positions({scaled(clip, change.scale), {}, 0, {}},
+                                                                      options.rate);
                        }});
   return action_dataset_detail::build(sources, labels.empty() ? nullptr : &labels, options);
 }

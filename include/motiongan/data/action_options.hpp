@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "motiongan/data/first_frame.hpp"
+#include "motiongan/formats/clip_options.hpp"
 
 namespace motiongan::motion {
 
@@ -24,8 +24,7 @@ struct ActionDatasetOptions {
   bool by_subject = false;                   ///< whether all clips of a subject go to the same part
   std::vector<std::string> test_subjects{};  ///< these, and only these, are for testing
   std::uint64_t split_seed = 1;
-  FirstFrame first_frame = FirstFrame::automatic;  ///< for BVH files
-  std::filesystem::path bones{};       ///< bone list for .csv and .npy files; empty: bones.tsv next to them
+  ClipOptions clips{};                 ///< how the files are read
   std::vector<std::string> classes{};  ///< keep only clips of these; empty: all
 
   void list_fields(FieldList& list) {
@@ -38,12 +37,7 @@ struct ActionDatasetOptions {
                                "*_{label}_*",
                        .type = "PATTERN"});
     list.add(classes, {.key = "classes", .help = "keep only clips of these labels [all]", .type = "A,B"});
-    list.add(bones, {.key = "bones",
-                     .help = "lines `joint <TAB> parent` for CSV and NPY files [bones.tsv next to them]",
-                     .type = "FILE"});
-    list.add(first_frame,
-             {.key = "first_frame",
-              .help = "auto: drop a T-pose that precedes the motion; keep; drop: the first frame"});
+    clips.list_fields(list);
     list.add(by_subject, {.key = "by_subject",
                           .help = "all clips of a subject go to the same part (subject: by --pattern, else "
                                   "the name up to its first _)",

@@ -7,18 +7,17 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <system_error>
+#include <utility>
 #include <vector>
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/data/action_options.hpp"
-#include "motiongan/data/first_frame.hpp"
-#include "motiongan/formats/bvh_reader.hpp"
-#include "motiongan/formats/clip_files.hpp"
-#include "motiongan/formats/position_files.hpp"
+#include "motiongan/data/clip_source.hpp"
+#include "motiongan/formats/read_motion.hpp"
 #include "motiongan/motion/kinematics.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/motion/position_clip.hpp"
+#include "motiongan/motion/root_joint.hpp"
 
 namespace motiongan::motion {
 
@@ -54,16 +53,21 @@ namespace action_dataset_detail {
 struct Loaded {
   PositionClip clip;  ///< at the data set's rate
   double seconds = 0;
-  int root = 0;             ///< the joint of the file that travels; joints above it are folded into it
-  std::size_t dropped = 0;  ///< T-pose frames
+  int root = 0;                ///< the joint of the file that travels; joints above it are folded into it
+  std::size_t dropped = 0;     ///< T-pose frames
+  double height = 0;           ///< of the body, see body_height
+  double unit_metres = 0;      ///< if the file says so; 0: unknown
+  std::optional<UpAxis> up{};  ///< of the file; unset: unknown
+  std::vector<std::string> notes{};
 };
 
 /// A candidate clip: its name and how to load it.
 struct Source {
   std::string id;
-  std::string name;                        ///< file name without extension, for labels and subjects
-  std::optional<std::string> label;        ///< if the clip comes with one
-  std::function<Loaded(int root)> load{};  ///< root negative: the clip's own
+  std::string name;                  ///< file name without extension, for labels and subjects
+  std::optional<std::string> label;  ///< if the clip comes with one
+  /// root negative: the clip's own
+  std::function<Loaded(int root, const LoadChange&)> load{};
 };
 
 /// A time with two decimals: "1.40 s".
@@ -73,41 +77,54 @@ inline std::string seconds_text(double seconds) {
   return text;
 }
 
-inline Loaded load_motion(const Motion& motion, const std::string& id, double rate, int root) {
+inline Loaded load_motion(LoadedMotion loaded, const std::string& id, double rate, int root) {
+  const Motion& motion = loaded.motion;
   check_motion(motion);
   Loaded out;
   out.root = root < 0 ? moving_root(motion) : root;
   out.seconds = motion.frames == 0 ? 0 : static_cast<double>(motion.frames) / motion.rate;
   out.clip = positions_of(motion, id, rate, out.root);
+  out.height = body_height(out.clip.skeleton);
+  out.dropped = loaded.dropped;
+  out.up = loaded.up;
+  out.unit_metres = loaded.unit_metres;
+  out.notes = std::move(loaded.notes);
+  const std::vector<std::size_t> beside = joints_beside(motion.skeleton, out.root);
+  if (!beside.empty())
+    out.notes.push_back(concat("clip '", id, "': ", beside.size(), beside.size() == 1 ? " joint" : " joints",
+                               " beside the body left out, first '",
+                               motion.skeleton.joints[beside.front()].name, "'"));
   return out;
 }
 
-inline Loaded load_positions(const PositionClip& clip, double rate) {
+inline Loaded load_positions(LoadedPositions loaded, double rate) {
+  const PositionClip& clip = loaded.clip;
   Loaded out;
   out.seconds = clip.frames == 0 ? 0 : static_cast<double>(clip.frames) / clip.rate;
   out.clip = resample(clip, rate);
+  out.height = body_height(clip.skeleton);
+  out.up = loaded.up;
+  out.notes = std::move(loaded.notes);
   return out;
 }
 
 inline Loaded load_file(const std::filesystem::path& file, const std::string& id,
-                        const ActionDatasetOptions& o, int root) {
-  if (extension_of(file) != ".bvh") {
-    Loaded out = load_positions(read_position_file(file, o.bones, o.rate), o.rate);
-    out.clip.id = id;
-    return out;
-  }
-  Clip clip = read_bvh(file);
-  const std::size_t dropped = drop_first_frames(clip, o.first_frame);
-  Loaded out = load_motion(to_motion(clip), id, o.rate, root);
-  out.dropped = dropped;
+                        const ActionDatasetOptions& o, int root, const LoadChange& change) {
+  if (!read_motion_detail::holds_positions(file))
+    return load_motion(read_changed(file, o.clips, change), id, o.rate, root);
+  ClipOptions how = o.clips;
+  if (change.up) how.up = change.up;
+  how.scale *= change.scale;
+  Loaded out = load_positions(read_positions(file, how, o.rate), o.rate);
+  out.clip.id = id;
   return out;
 }
 
-/// The clips of a folder: all .bvh, .csv and .npy files but the label file and the bone list; or the file
-/// itself. Throws Error if there are none.
+/// The motion files of a folder but the label file and the bone list; or the file itself. Throws Error if
+/// there are none.
 inline std::vector<std::filesystem::path> clip_files(const std::filesystem::path& where,
                                                      const ActionDatasetOptions& options) {
-  return find_clip_files(where, {".bvh", ".csv", ".npy"}, {options.labels, options.bones});
+  return find_motion_files(where, {options.labels, options.clips.bones});
 }
 
 }  // namespace action_dataset_detail

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -15,21 +16,48 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
+#include "motiongan/data/caption_file.hpp"
 #include "motiongan/data/dataset_options.hpp"
 #include "motiongan/data/pose.hpp"
 #include "motiongan/formats/clip_files.hpp"
+#include "motiongan/formats/read_motion.hpp"
 #include "motiongan/motion/kinematics.hpp"
 #include "motiongan/motion/motion.hpp"
+#include "motiongan/motion/root_joint.hpp"
 #include "motiongan/motion/skeleton.hpp"
 
 namespace motiongan::motion {
+
+/// What a data set changes in a clip to make it like the others.
+struct LoadChange {
+  std::optional<UpAxis> up{};  ///< instead of the one detected
+  double scale = 1;
+  bool operator==(const LoadChange&) const = default;
+};
+
+/// Reads a motion for a data set.
+inline LoadedMotion read_changed(const std::filesystem::path& file, ClipOptions options,
+                                 const LoadChange& change) {
+  if (change.up) options.up = change.up;
+  options.scale *= change.scale;
+  return read_motion(file, options);
+}
+
+/// A motion in memory for a data set; it is y up.
+inline LoadedMotion in_memory(const Motion& motion, const LoadChange& change) {
+  LoadedMotion out;
+  out.motion = scaled(motion, change.scale);
+  return out;
+}
 
 /// A candidate clip: its name and how to load its motion.
 struct ClipSource {
   std::string id;
   std::string name;                   ///< path of the file, if any, for captions from names
   std::vector<std::string> captions;  ///< those it comes with, may be empty
-  std::function<Motion()> load;
+  std::function<LoadedMotion(const LoadChange&)> load;
+  std::string whole = {};               ///< id of the clip that this is a part of; empty if it is none
+  std::vector<CaptionPart> parts = {};  ///< if captions describe only parts of the clip: these parts
 };
 
 /// A clip's poses, and what is needed to match it with others.
@@ -37,8 +65,13 @@ struct EncodedClip {
   Skeleton skeleton;
   double source_rate = 0;
   std::size_t source_frames = 0;
-  std::size_t stride = 0;     ///< frames of `poses` between two frames of a window
-  int root = 0;               ///< the joint that travels
+  std::size_t stride = 0;      ///< frames of `poses` between two frames of a window
+  int root = 0;                ///< the joint that travels
+  double height = 0;           ///< of the body, see body_height
+  double unit_metres = 0;      ///< if the file says so; 0: unknown
+  std::optional<UpAxis> up{};  ///< of the file; unset: unknown
+  std::size_t dropped = 0;     ///< frames removed at the start
+  std::vector<std::string> notes{};
   std::size_t frames = 0;     ///< of `poses`; 0 if the clip is too short
   std::vector<double> poses;  ///< [frames, full dof]
   double seconds() const { return source_frames == 0 ? 0 : static_cast<double>(source_frames) / source_rate; }
@@ -80,6 +113,20 @@ inline void in_two_threads(std::size_t count, const std::function<void(std::size
     if (error) std::rethrow_exception(error);
 }
 
+/// The same, but returns the messages of Errors, [count]; empty where there was none.
+inline std::vector<std::string> errors_in_two_threads(std::size_t count,
+                                                      const std::function<void(std::size_t)>& work) {
+  std::vector<std::string> errors(count);
+  in_two_threads(count, [&](std::size_t i) {
+    try {
+      work(i);
+    } catch (const Error& error) {
+      errors[i] = error.what();
+    }
+  });
+  return errors;
+}
+
 /// Encodes a clip at its natural stride (`stride` 0) or the given one. Its root position is that of its own
 /// travelling joint (`root` -1) or of the given joint. Clips too short for a window are not encoded.
 inline EncodedClip encode_clip(Motion motion, const DatasetOptions& options, std::size_t stride, int root) {
@@ -91,6 +138,7 @@ inline EncodedClip encode_clip(Motion motion, const DatasetOptions& options, std
   out.root = root < 0 ? moving_root(motion) : root;
   out.stride = stride != 0 ? stride : natural_stride(motion.rate, rate);
   out.skeleton = motion.skeleton;
+  out.height = body_height(out.skeleton);
   if (!long_enough(out, frames, rate)) return out;
   const double target = rate * static_cast<double>(out.stride);
   if (std::abs(motion.rate / target - 1) > 1e-6) motion = resample(motion, target);
@@ -98,6 +146,17 @@ inline EncodedClip encode_clip(Motion motion, const DatasetOptions& options, std
   out.poses =
       PoseLayout(out.skeleton, options.root_position, static_cast<std::size_t>(out.root), options.rotation())
           .encode(motion, out.stride);
+  return out;
+}
+
+/// The same, with what is known of the file.
+inline EncodedClip encode_clip(LoadedMotion loaded, const DatasetOptions& options, std::size_t stride,
+                               int root) {
+  EncodedClip out = encode_clip(std::move(loaded.motion), options, stride, root);
+  out.up = loaded.up;
+  out.unit_metres = loaded.unit_metres;
+  out.dropped = loaded.dropped;
+  out.notes = std::move(loaded.notes);
   return out;
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
-#include "motiongan/data/captions.hpp"
+#include "motiongan/data/caption_match.hpp"
 #include "motiongan/data/clip_source.hpp"
 #include "motiongan/data/dataset_options.hpp"
 #include "motiongan/data/labelled_motion.hpp"
@@ -48,18 +48,29 @@ class Dataset {
   DatasetOptions options;
   std::vector<DatasetClip> train;  ///< in the order of their ids
   std::vector<DatasetClip> test;
-  std::vector<SkippedClip> skipped;  ///< clips that are too short
-  std::size_t stride = 1;            ///< frames of a clip between two frames of a window
-  std::size_t named = 0;             ///< clips captioned by their name
-  std::size_t dropped_frames = 0;    ///< T-pose frames removed from the starts of clips
+  std::vector<SkippedClip> skipped;          ///< clips that are too short
+  std::vector<SkippedClip> bad;              ///< files that could not be read, with clips.skip_bad
+  std::vector<SkippedClip> other_skeletons;  ///< clips left out by clips.skeleton_of
+  std::vector<std::string> notes;      ///< what was corrected or ignored in the clips used, one sentence each
+  std::size_t stride = 1;              ///< frames of a clip between two frames of a window
+  std::size_t named = 0;               ///< clips captioned by their name
+  std::size_t dropped_frames = 0;      ///< T-pose frames removed from the starts of clips
+  std::size_t parts = 0;               ///< clips that are a captioned part of a file, id@begin-end
+  std::size_t described_in_parts = 0;  ///< clips left out because the captions of their parts cover them
+  CaptionReport captions;              ///< which captions matched no clip, and the reverse
 
   /// Loads all BVH files in a folder and its subfolders, in sorted order, or one file.
   ///
   /// Only clips of at least frames / rate seconds are used. A clip keeps its rate if that is a multiple of
   /// `rate`; otherwise it is resampled to the largest multiple of `rate` below it (to `rate` itself if it is
   /// slower). With clips of several rates, the smallest stride applies to all and the others are resampled.
-  /// Captions are looked up by file name without extension (or path below the folder); a clip without a
-  /// caption gets one from its name. Throws Error for an empty folder, unreadable files, different skeletons,
+  ///
+  /// Captions are those of `options.captions`, matched by match_captions(), or of .txt files beside the clips
+  /// (read_captions_beside()); a clip without a caption gets one from its name. A captioned part of a clip
+  /// becomes a clip of its own, `walk@2.0-4.5`, on the same side of the split. A clip with captions of parts
+  /// only is left out if they cover it, that is, if no stretch as long as a window lies outside them.
+  ///
+  /// Throws Error for an empty folder, unreadable files, captions that match no clip, different skeletons,
   /// and if no clip is long enough.
   static Dataset from_bvh(const std::filesystem::path& folder_or_file, const DatasetOptions& options = {});
 

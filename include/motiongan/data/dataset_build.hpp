@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
-#include <memory>
+#include <map>
 #include <set>
 #include <span>
 #include <string>
@@ -14,6 +14,9 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
+#include "motiongan/data/caption_parts.hpp"
+#include "motiongan/data/captions.hpp"
+#include "motiongan/data/clip_agreement.hpp"
 #include "motiongan/data/dataset.hpp"
 #include "motiongan/data/split.hpp"
 #include "motiongan/formats/bvh_reader.hpp"
@@ -34,51 +37,85 @@ struct Used {
   EncodedClip clip;
 };
 
-/// Encodes all sources long enough for a window, all at one stride and with one root joint.
-inline std::vector<Used> encode_all(const std::vector<ClipSource>& sources, Dataset& data, int& root) {
+/// The clips that a data set can use: readable, long enough, and of the skeleton that the options name.
+inline std::vector<Used> choose_clips(const std::vector<ClipSource>& sources, std::vector<EncodedClip>& clips,
+                                      const std::vector<std::string>& errors, Dataset& data) {
   const DatasetOptions& o = data.options;
-  std::vector<EncodedClip> clips(sources.size());
-  in_two_threads(sources.size(), [&](std::size_t i) { clips[i] = encode_clip(sources[i].load(), o, 0, -1); });
-
-  std::size_t longest = 0;
+  Skeleton only;
+  if (!o.clips.skeleton_of.empty()) only = read_motion(o.clips.skeleton_of, o.clips).motion.skeleton;
+  std::size_t longest = clips.size(), readable = 0;
   std::vector<Used> used;
   for (std::size_t i = 0; i < clips.size(); ++i) {
-    if (clips[i].seconds() > clips[longest].seconds()) longest = i;
+    if (!errors[i].empty()) {
+      data.bad.push_back({sources[i].id, errors[i]});
+      continue;
+    }
+    if (only.size() > 0 && !have_same_joints(only, clips[i].skeleton)) {
+      data.other_skeletons.push_back({sources[i].id, some_of(joint_differences(only, clips[i].skeleton), 4)});
+      continue;
+    }
+    ++readable;
+    data.dropped_frames += clips[i].dropped;
+    if (longest == clips.size() || clips[i].seconds() > clips[longest].seconds()) longest = i;
     const std::size_t reach = (o.frames - 1) * clips[i].stride;
     if (clips[i].frames > reach) {
       used.push_back({i, std::move(clips[i])});
     } else {
       data.skipped.push_back(
           {sources[i].id,
-           concat(two_decimals(clips[i].seconds()), " s long, a window of ", o.frames, " frames at ", o.rate,
+           concat(clips[i].source_frames == 0 && !sources[i].whole.empty() ? "outside its clip, " : "",
+                  two_decimals(clips[i].seconds()), " s long, a window of ", o.frames, " frames at ", o.rate,
                   " per second is ", two_decimals(static_cast<double>(o.frames) / o.rate), " s")});
     }
   }
+  require(readable > 0, "no clip has the skeleton of ", o.clips.skeleton_of.string(), "; the first, '",
+          sources.front().id,
+          "', differs: ", data.other_skeletons.empty() ? std::string() : data.other_skeletons.front().reason);
   if (used.empty()) {
     const double seconds = clips[longest].seconds();
     throw Error(
-        "none of ", clips.size(), " clips holds ", o.frames, " frames at ", o.rate, " per second (",
+        "none of ", readable, " clips holds ", o.frames, " frames at ", o.rate, " per second (",
         two_decimals(static_cast<double>(o.frames) / o.rate), " s); the longest, '", sources[longest].id,
         "', has ", two_decimals(seconds), " s: use at most ", std::floor(seconds * o.rate), " frames, or ",
         seconds > 0 ? two_decimals(std::ceil(100 * static_cast<double>(o.frames) / seconds) / 100) : "no",
         " frames per second or more");
   }
+  return used;
+}
+
+/// What has to change in each clip so that all have one up axis and, if asked for, one height; [used]. Throws
+/// Error if they cannot be used together.
+inline std::vector<LoadChange> agree(const std::vector<ClipSource>& sources, const std::vector<Used>& used,
+                                     Dataset& data) {
+  std::vector<ClipFacts> facts;
+  for (const Used& u : used)
+    facts.push_back({sources[u.source].id, &u.clip.skeleton, u.clip.height, u.clip.up, u.clip.unit_metres});
+  data.format.space = space_of(facts, data.options.clips);
+  return agreed_changes(facts, data.options.clips, data.notes);
+}
+
+/// Encodes all sources long enough for a window, all at one stride and with one root joint.
+inline std::vector<Used> encode_all(const std::vector<ClipSource>& sources, Dataset& data, int& root) {
+  const DatasetOptions& o = data.options;
+  std::vector<EncodedClip> clips(sources.size());
+  const std::vector<std::string> errors = errors_in_two_threads(
+      sources.size(), [&](std::size_t i) { clips[i] = encode_clip(sources[i].load({}), o, 0, -1); });
+  require_all_read(errors, o.clips.skip_bad);
+  std::vector<Used> used = choose_clips(sources, clips, errors, data);
+  const std::vector<LoadChange> changes = agree(sources, used, data);
 
   data.stride = used.front().clip.stride;
   root = 0;
   for (const Used& u : used) {
-    require_same_channels(used.front().clip.skeleton, u.clip.skeleton,
-                          concat("clip '", sources[u.source].id, "'"),
-                          concat("clip '", sources[used.front().source].id, "'"));
     data.stride = std::min(data.stride, u.clip.stride);
     root = std::max(root, u.clip.root);  // clips in which nothing travels have root 0
   }
   in_two_threads(used.size(), [&](std::size_t i) {
     EncodedClip& clip = used[i].clip;
-    if (clip.stride == data.stride &&
+    if (clip.stride == data.stride && !changes[i].up && changes[i].scale == 1 &&
         (clip.root == root || (!o.root_position && o.rotation() == RootRotation::expmap)))
       return;
-    clip = encode_clip(sources[used[i].source].load(), o, data.stride, root);
+    clip = encode_clip(sources[used[i].source].load(changes[i]), o, data.stride, root);
   });
   // Resampling rounds a clip's length down to whole frames, which may cost it its only window.
   std::erase_if(used, [&](const Used& u) {
@@ -89,15 +126,26 @@ inline std::vector<Used> encode_all(const std::vector<ClipSource>& sources, Data
   });
   require(!used.empty(), "no clip holds a window of ", o.frames, " frames at ", o.rate,
           " per second after resampling; use fewer frames");
+  for (Used& u : used) {
+    data.notes.insert(data.notes.end(), u.clip.notes.begin(), u.clip.notes.end());
+  }
   return used;
 }
 
-/// The captions of a source: from the file, else its own, else from its name.
-inline std::vector<std::string> captions_of(const ClipSource& source, const Captions& file, Dataset& data) {
+/// The skeleton of the first clip, each joint with the channels of the clip that has most of them: files of
+/// one skeleton may have channels in other orders, or positions only in some.
+inline Skeleton common_skeleton(const std::vector<Used>& used) {
+  Skeleton out = used.front().clip.skeleton;
+  for (const Used& u : used)
+    for (std::size_t j = 0; j < out.size(); ++j)
+      if (u.clip.skeleton.joints[j].channels.size() > out.joints[j].channels.size())
+        out.joints[j].channels = u.clip.skeleton.joints[j].channels;
+  return out;
+}
+
+/// The captions of a source, or one from its name.
+inline std::vector<std::string> captions_of(const ClipSource& source, Dataset& data) {
   std::vector<std::string> out = source.captions;
-  const std::string stem = std::filesystem::path(source.name).stem().string();
-  for (const std::string& key : {stem, source.id})
-    if (const auto at = file.find(key); at != file.end()) out = at->second;
   if (out.empty()) {
     out.push_back(caption_from_name(source.name));
     ++data.named;
@@ -107,6 +155,40 @@ inline std::vector<std::string> captions_of(const ClipSource& source, const Capt
             "', expected at least one word");
     require(is_utf8(caption), "clip '", source.id, "' has a caption that is not UTF-8");
   }
+  return out;
+}
+
+/// Removes the clips whose captions describe only parts of them, if these parts cover them.
+inline void drop_described_in_parts(std::vector<Used>& used, const std::vector<ClipSource>& sources,
+                                    Dataset& data) {
+  const DatasetOptions& o = data.options;
+  const double window = static_cast<double>(o.frames) / o.rate;
+  std::erase_if(used, [&](const Used& u) {
+    const ClipSource& source = sources[u.source];
+    const double begin = static_cast<double>(u.clip.dropped) / u.clip.source_rate;
+    if (source.parts.empty() || !parts_cover(source.parts, begin, begin + u.clip.seconds(), window))
+      return false;
+    ++data.described_in_parts;
+    return true;
+  });
+  for (const Used& u : used) data.parts += sources[u.source].whole.empty() ? 0 : 1;
+  require(!used.empty(), "captions describe parts of the clips, and none of these holds a window of ",
+          o.frames, " frames at ", o.rate, " per second; use fewer frames, or captions of whole clips");
+}
+
+/// Whether each clip is for training. A clip and its parts are on the same side.
+inline std::vector<bool> split_by_whole(const std::vector<Used>& used, const std::vector<ClipSource>& sources,
+                                        const DatasetOptions& options) {
+  std::map<std::string, std::size_t> numbers;
+  std::vector<std::size_t> number_of;
+  for (const Used& u : used) {
+    const ClipSource& source = sources[u.source];
+    number_of.push_back(
+        numbers.emplace(source.whole.empty() ? source.id : source.whole, numbers.size()).first->second);
+  }
+  const std::vector<bool> split = split_clips(numbers.size(), options.train_share, options.split_seed);
+  std::vector<bool> out;
+  for (const std::size_t number : number_of) out.push_back(split[number]);
   return out;
 }
 
@@ -202,14 +284,14 @@ inline Dataset build(const std::vector<ClipSource>& sources, const DatasetOption
   for (const ClipSource& s : sources) require(ids.insert(s.id).second, "two clips are called '", s.id, "'");
   Dataset data;
   data.options = options;
-  const Captions captions = options.captions.empty() ? Captions{} : read_captions(options.captions);
   int root = 0;
-  const std::vector<Used> used = encode_all(sources, data, root);
-  const std::vector<bool> is_train = split_clips(used.size(), options.train_share, options.split_seed);
+  std::vector<Used> used = encode_all(sources, data, root);
+  drop_described_in_parts(used, sources, data);
+  const std::vector<bool> is_train = split_by_whole(used, sources, options);
 
   MotionFormat& format = data.format;
-  format.layout = PoseLayout(used.front().clip.skeleton, options.root_position,
-                             static_cast<std::size_t>(root), options.rotation());
+  format.layout = PoseLayout(common_skeleton(used), options.root_position, static_cast<std::size_t>(root),
+                             options.rotation());
   for (const Joint& joint : format.skeleton().joints)
     require(is_utf8(joint.name), "clip '", sources[used.front().source].id, "' has a joint called '",
             joint.name, "', which is not UTF-8; a model file cannot hold it: rename the joint");
@@ -230,7 +312,7 @@ inline Dataset build(const std::vector<ClipSource>& sources, const DatasetOption
   for (std::size_t c = 0; c < used.size(); ++c) {
     DatasetClip clip;
     clip.id = sources[used[c].source].id;
-    clip.captions = captions_of(sources[used[c].source], captions, data);
+    clip.captions = captions_of(sources[used[c].source], data);
     clip.frames = used[c].clip.frames;
     clip.poses = format.normalizer.normalize<float>(used[c].clip.poses);
     if (is_train[c])
@@ -250,29 +332,35 @@ inline Dataset build(const std::vector<ClipSource>& sources, const DatasetOption
 }  // namespace dataset_detail
 
 inline Dataset Dataset::from_bvh(const std::filesystem::path& folder_or_file, const DatasetOptions& options) {
-  const std::vector<std::filesystem::path> files = find_clip_files(folder_or_file);
+  const std::vector<std::filesystem::path> files =
+      find_motion_files(folder_or_file, {options.captions, options.clips.bones});
   const std::vector<std::string> ids = clip_ids(files, folder_or_file);
-  std::vector<std::size_t> dropped(files.size(), 0);
+  CaptionMatch match = find_captions(options.captions, files, clip_names(files, ids, folder_or_file));
   std::vector<ClipSource> sources;
-  for (std::size_t i = 0; i < files.size(); ++i) {
+  for (std::size_t i = 0; i < files.size(); ++i)
     sources.push_back(
-        {ids[i], files[i].string(), {}, [&dropped, i, file = files[i], rule = options.first_frame] {
-           Clip clip = read_bvh(file);
-           dropped[i] = drop_first_frames(clip, rule);
-           return motion::to_motion(clip);
+        {ids[i], files[i].string(), {}, [file = files[i], how = options.clips](const LoadChange& change) {
+           return read_changed(file, how, change);
          }});
-  }
-  Dataset data = dataset_detail::build(sources, options);
-  for (const std::size_t n : dropped) data.dropped_frames += n;
+  Dataset data = dataset_detail::build(with_captions(std::move(sources), match.of_clip), options);
+  data.captions = std::move(match.report);
   return data;
 }
 
 inline Dataset Dataset::from_motions(const std::vector<LabelledMotion>& motions,
                                      const DatasetOptions& options) {
   std::vector<ClipSource> sources;
-  for (const LabelledMotion& m : motions)
-    sources.push_back({m.id, m.id, m.captions, [&m] { return m.motion; }});
-  return dataset_detail::build(sources, options);
+  std::vector<ClipName> names;
+  for (const LabelledMotion& m : motions) {
+    sources.push_back(
+        {m.id, m.id, m.captions, [&m](const LoadChange& change) { return in_memory(m.motion, change); }});
+    names.push_back(clip_name(m.id));
+  }
+  CaptionMatch match =
+      match_captions(options.captions.empty() ? CaptionFile{} : read_caption_file(options.captions), names);
+  Dataset data = dataset_detail::build(with_captions(std::move(sources), match.of_clip), options);
+  data.captions = std::move(match.report);
+  return data;
 }
 
 }  // namespace motiongan::motion

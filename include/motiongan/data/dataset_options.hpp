@@ -5,28 +5,31 @@
 #include <filesystem>
 #include <optional>
 
-#include "motiongan/data/first_frame.hpp"
 #include "motiongan/data/pose.hpp"
+#include "motiongan/formats/clip_options.hpp"
 
 namespace motiongan::motion {
 
 struct DatasetOptions {
-  std::size_t frames = 32;           ///< N, frames of a window
-  double rate = 4.0;                 ///< frames per second of a window
-  std::filesystem::path captions{};  ///< lines of `clip id <TAB> description`; empty: captions from names
-  bool root_position = true;         ///< whether the root's position is part of a pose
+  std::size_t frames = 32;  ///< N, frames of a window
+  double rate = 4.0;        ///< frames per second of a window
+  /// Caption file (.csv, .json, or lines of `clip id <TAB> description`) or folder of .txt files. Empty: the
+  /// .txt files beside the clips, else captions from names.
+  std::filesystem::path captions{};
+  bool root_position = true;  ///< whether the root's position is part of a pose
   /// expmap as in the papers, velocity for long motion; not set: heading.
   std::optional<RootRotation> root_rotation = {};
   double train_share = 0.67;  ///< fraction of the clips; the rest is for testing
   std::uint64_t split_seed = 1;
-  FirstFrame first_frame = FirstFrame::automatic;  ///< for BVH files
+  ClipOptions clips{};  ///< how the files are read
 
   RootRotation rotation() const { return root_rotation.value_or(RootRotation::heading); }
 
   void list_fields(FieldList& list) {
     list.add(captions, {.key = "captions",
-                        .help = "file of lines `clip id <TAB> description` [FOLDER/captions.tsv, else from "
-                                "file names]",
+                        .help = "captions.tsv (lines `clip id <TAB> description`), .csv or .json, or a "
+                                "folder of .txt files [captions.tsv, .csv or .json in FOLDER, else .txt "
+                                "files beside the clips, else file names]",
                         .type = "FILE"});
     list.add(frames, {.key = "frames",
                       .help = "frames of a motion; a power of two where a network is a CNN",
@@ -38,9 +41,7 @@ struct DatasetOptions {
                              .help = "heading: position and yaw, every motion starts facing the same way; "
                                      "velocity: steps and turns, for motion of any length; expmap: as the "
                                      "papers; auto: velocity for an RNN generator, else heading"});
-    list.add(first_frame,
-             {.key = "first_frame",
-              .help = "auto: drop a T-pose that precedes the motion; keep; drop: the first frame"});
+    clips.list_fields(list);
     list.add(train_share, {.key = "train_share",
                            .help = "fraction of the clips to train on; the rest is held out for testing",
                            .range = Range::between(0, 1)});

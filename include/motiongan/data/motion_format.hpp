@@ -13,6 +13,7 @@
 #include "motiongan/data/normalizer.hpp"
 #include "motiongan/data/pose.hpp"
 #include "motiongan/data/vocabulary.hpp"
+#include "motiongan/motion/body.hpp"
 #include "motiongan/motion/skeleton.hpp"
 #include "motiongan/motion/skeleton_match.hpp"
 
@@ -25,6 +26,7 @@ struct MotionFormat {
   Vocabulary vocabulary;
   double rate = 0;         ///< frames per second of a window
   std::size_t frames = 0;  ///< N, frames of a window
+  ClipSpace space{};       ///< unit of its motion, and the up axis of the clips that it was fitted to
 
   /// Kept dimensions (indices 0 .. kept dof - 1) that are relative to the first frame of each window: the
   /// root's x, z (y is up) and yaw, so that it does not matter where a motion was recorded. Their mean is 0

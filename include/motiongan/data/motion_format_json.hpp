@@ -17,30 +17,6 @@
 
 namespace motiongan::io {
 
-/// {"skeleton": HIERARCHY text, "root": joint name, "root_position", "root_rotation": "expmap", "heading" or
-/// "velocity", "rate", "frames", "mean": [full dof], "std": [full dof], "relative_dims": [...], "vocabulary":
-/// [words]} and, if the training range is known, "low" and "high": [kept dof]. Every number round-trips
-/// exactly. Throws Error for an inconsistent format.
-inline nlohmann::json to_json(const motion::MotionFormat& format) {
-  format.check();
-  nlohmann::json json;
-  json["skeleton"] = motion::format_hierarchy(format.skeleton());
-  json["root"] = format.skeleton().joints[format.layout.root()].name;
-  json["root_position"] = format.layout.root_position();
-  json["root_rotation"] = std::string(name_of(format.layout.root_rotation()));
-  json["rate"] = format.rate;
-  json["frames"] = format.frames;
-  json["mean"] = format.normalizer.mean();
-  json["std"] = format.normalizer.std();
-  json["relative_dims"] = format.relative_dims;
-  json["vocabulary"] = format.vocabulary.words();
-  if (!format.low.empty()) {
-    json["low"] = format.low;
-    json["high"] = format.high;
-  }
-  return json;
-}
-
 namespace motion_format_detail {
 
 /// Whether the value is a non-negative integer, signed or unsigned in the JSON.
@@ -76,6 +52,48 @@ T read(const nlohmann::json& json, const char* key, const char* expected) {
 
 }  // namespace motion_format_detail
 
+/// Adds "unit_metres" and "clips_up" where they are not the defaults: older files lack them.
+inline void space_to_json(const motion::ClipSpace& space, nlohmann::json& json) {
+  if (space.unit_metres > 0) json["unit_metres"] = space.unit_metres;
+  if (space.clips_up != motion::UpAxis::y) json["clips_up"] = name_of(space.clips_up);
+}
+
+inline motion::ClipSpace space_from_json(const nlohmann::json& json) {
+  motion::ClipSpace out;
+  if (json.contains("unit_metres"))
+    out.unit_metres = motion_format_detail::read<double>(json, "unit_metres", "metres per unit");
+  require(out.unit_metres >= 0, "the format's unit_metres is ", out.unit_metres, ", expected at least 0");
+  if (json.contains("clips_up"))
+    out.clips_up = enum_from<motion::UpAxis>(
+        motion_format_detail::read<std::string>(json, "clips_up", "\"y\" or \"z\""), "the format's clips_up");
+  return out;
+}
+
+/// {"skeleton": HIERARCHY text, "root": joint name, "root_position", "root_rotation": "expmap", "heading" or
+/// "velocity", "rate", "frames", "mean": [full dof], "std": [full dof], "relative_dims": [...], "vocabulary":
+/// [words]} and, if known, the training range "low" and "high": [kept dof], and "unit_metres" and "clips_up".
+/// Every number round-trips exactly. Throws Error for an inconsistent format.
+inline nlohmann::json to_json(const motion::MotionFormat& format) {
+  format.check();
+  nlohmann::json json;
+  json["skeleton"] = motion::format_hierarchy(format.skeleton());
+  json["root"] = format.skeleton().joints[format.layout.root()].name;
+  json["root_position"] = format.layout.root_position();
+  json["root_rotation"] = std::string(name_of(format.layout.root_rotation()));
+  json["rate"] = format.rate;
+  json["frames"] = format.frames;
+  json["mean"] = format.normalizer.mean();
+  json["std"] = format.normalizer.std();
+  json["relative_dims"] = format.relative_dims;
+  json["vocabulary"] = format.vocabulary.words();
+  space_to_json(format.space, json);
+  if (!format.low.empty()) {
+    json["low"] = format.low;
+    json["high"] = format.high;
+  }
+  return json;
+}
+
 /// Inverse of to_json. Throws Error, naming the member, if one is missing, of another type or inconsistent
 /// with the rest.
 inline motion::MotionFormat motion_format_from_json(const nlohmann::json& json) {
@@ -94,6 +112,7 @@ inline motion::MotionFormat motion_format_from_json(const nlohmann::json& json) 
                                      static_cast<std::size_t>(root), root_rotation);
   format.rate = read<double>(json, "rate", "frames per second");
   format.frames = read<std::size_t>(json, "frames", "a whole number, 1 or more");
+  format.space = space_from_json(json);
   format.normalizer = motion::Normalizer(read<std::vector<double>>(json, "mean", "numbers"),
                                          read<std::vector<double>>(json, "std", "numbers"));
   format.relative_dims = read<std::vector<std::size_t>>(json, "relative_dims", "whole numbers");

@@ -12,6 +12,7 @@
 #include "motiongan/data/normalizer.hpp"
 #include "motiongan/data/position_layout.hpp"
 #include "motiongan/formats/text_file.hpp"
+#include "motiongan/motion/body.hpp"
 #include "motiongan/motion/kinematics.hpp"
 #include "motiongan/motion/skeleton.hpp"
 #include "motiongan/motion/skeleton_match.hpp"
@@ -51,6 +52,7 @@ struct PositionFormat {
   double rate = 30;                  ///< frames per second
   std::size_t frames = 30;           ///< T, frames of a prior and of a future
   std::vector<std::string> classes;  ///< names, in the order of class indices
+  ClipSpace space{};  ///< unit of its motion, and the up axis of the clips that it was fitted to
 
   const Skeleton& skeleton() const { return layout.skeleton(); }
 

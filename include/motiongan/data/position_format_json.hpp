@@ -25,6 +25,7 @@ inline nlohmann::json to_json(const motion::PositionFormat& format) {
   json["mean"] = format.normalizer.mean();
   json["std"] = format.normalizer.std();
   json["classes"] = format.classes;
+  space_to_json(format.space, json);
   return json;
 }
 
@@ -40,6 +41,7 @@ inline motion::PositionFormat position_format_from_json(const nlohmann::json& js
       motion::PositionLayout(std::move(skeleton), read<bool>(json, "root_track", "true or false"));
   format.rate = read<double>(json, "rate", "frames per second");
   format.frames = read<std::size_t>(json, "frames", "a whole number, 1 or more");
+  format.space = space_from_json(json);
   format.normalizer = motion::Normalizer(read<std::vector<double>>(json, "mean", "numbers"),
                                          read<std::vector<double>>(json, "std", "numbers"));
   format.classes = read<std::vector<std::string>>(json, "classes", "names");

@@ -43,7 +43,7 @@ inline void append_offset(std::string& out, const std::string& indent, const Vec
 /// Throws Error unless a reader would read this name back.
 inline void check_name(const std::string& name) {
   const bool sound = !name.empty() && !is_blank(name.front()) && !is_blank(name.back()) &&
-                     name.front() != '{' && name.back() != '{' && name.find('\n') == name.npos &&
+                     name.front() != '{' && name.back() != '{' && name.find_first_of("\r\n") == name.npos &&
                      name.find(" {") == name.npos && name.find("\t{") == name.npos;
   require(sound, "a joint called '", name,
           "' cannot be written as BVH: a name must not be empty, contain a line break, begin or end with a "

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
+#include "motiongan/formats/text_file.hpp"
 
 namespace motiongan::motion {
 
@@ -19,8 +20,10 @@ inline std::string extension_of(const std::filesystem::path& file) {
   return text;
 }
 
-/// All files with one of the extensions (".bvh") in a folder and its subfolders, sorted, except those in
-/// `without`; or the file itself. Throws Error if there are none.
+/// All files with one of the extensions (".bvh", in any case) in a folder and its subfolders, sorted, except
+/// those in `without`; or the file itself. Hidden files and folders, which start with a dot, are left out; so
+/// are the `._name` files that macOS puts next to files. Dead links and empty files are listed, for a reader
+/// to name them. Throws Error if there are none.
 inline std::vector<std::filesystem::path> find_clip_files(
     const std::filesystem::path& where, const std::vector<std::string_view>& extensions = {".bvh"},
     const std::vector<std::filesystem::path>& without = {}) {
@@ -29,23 +32,34 @@ inline std::vector<std::filesystem::path> find_clip_files(
   for (std::size_t i = 0; i < extensions.size(); ++i)
     kinds += concat(i == 0 ? "" : i + 1 < extensions.size() ? ", " : " or ", extensions[i]);
   std::error_code problem;
-  require(fs::exists(where, problem), where.string(), " does not exist; give a ", kinds,
-          " file or a folder of them");
+  if (!fs::exists(where, problem))
+    throw Error(where.string(), " ", why_missing(where), "; give a ", kinds, " file or a folder of them");
   if (!fs::is_directory(where, problem)) return {where};
   std::vector<fs::path> out;
+  std::size_t hidden = 0;  // files
   fs::recursive_directory_iterator entries(where, fs::directory_options::skip_permission_denied, problem);
   for (; !problem && entries != fs::recursive_directory_iterator(); entries.increment(problem)) {
     const fs::path& file = entries->path();
+    std::error_code ignored;
+    const bool is_folder = entries->is_directory(ignored), is_hidden = file.filename().string()[0] == '.';
+    if (is_folder) {
+      if (is_hidden) entries.disable_recursion_pending();
+      continue;
+    }
     const bool is_clip =
         std::find(extensions.begin(), extensions.end(), extension_of(file)) != extensions.end();
-    std::error_code ignored;
     const bool left_out = std::any_of(without.begin(), without.end(), [&](const fs::path& other) {
       return !other.empty() && fs::equivalent(file, other, ignored);
     });
-    if (is_clip && !left_out && !entries->is_directory()) out.push_back(file);
+    if (!is_clip || left_out) continue;
+    if (is_hidden)
+      ++hidden;
+    else
+      out.push_back(file);
   }
   require(!problem, "folder ", where.string(), " cannot be read: ", problem.message());
-  require(!out.empty(), "folder ", where.string(), " and its subfolders have no ", kinds, " file");
+  require(!out.empty(), "folder ", where.string(), " and its subfolders have no ", kinds, " file",
+          hidden > 0 ? " (hidden files, which start with a dot, are not read)" : "");
   std::sort(out.begin(), out.end());
   return out;
 }

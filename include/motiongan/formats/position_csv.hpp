@@ -19,25 +19,35 @@ namespace motiongan::motion {
 
 namespace position_csv_detail {
 
+/// The last character of each line: CR in files of old Macintosh programs, which have no LF.
+inline char line_end_of(std::string_view text) { return text.find('\n') == text.npos ? '\r' : '\n'; }
+
+/// The separator of columns. Spreadsheets write ';' where the comma is the decimal point.
+inline char separator_of(std::string_view header) {
+  for (const char c : {',', ';', '\t'})
+    if (header.find(c) != header.npos) return c;
+  return ',';
+}
+
 /// Removes and returns the next line of `text`, without its line break.
-inline std::string_view take_line(std::string_view& text) {
-  std::string_view line = text.substr(0, text.find('\n'));
+inline std::string_view take_line(std::string_view& text, char line_end) {
+  std::string_view line = text.substr(0, text.find(line_end));
   text.remove_prefix(std::min(text.size(), line.size() + 1));
   if (line.ends_with('\r')) line.remove_suffix(1);
   return line;
 }
 
-/// Splits `line` at its commas; fields are trimmed.
-inline void split_fields(std::string_view line, std::vector<std::string_view>& out) {
+/// Splits `line` at `separator`; fields are trimmed.
+inline void split_fields(std::string_view line, char separator, std::vector<std::string_view>& out) {
   out.clear();
   for (std::size_t at = 0;;) {
-    const std::size_t comma = std::min(line.find(',', at), line.size());
-    std::string_view field = line.substr(at, comma - at);
+    const std::size_t stop = std::min(line.find(separator, at), line.size());
+    std::string_view field = line.substr(at, stop - at);
     const std::size_t first = field.find_first_not_of(" \t");
     out.push_back(first == field.npos ? std::string_view()
                                       : field.substr(first, field.find_last_not_of(" \t") - first + 1));
-    if (comma == line.size()) return;
-    at = comma + 1;
+    if (stop == line.size()) return;
+    at = stop + 1;
   }
 }
 
@@ -94,16 +104,20 @@ inline double rate_from_times(const std::vector<double>& times, const std::vecto
 }  // namespace position_csv_detail
 
 /// Reads text whose first line names the columns (`Hips.x,Hips.y,Hips.z,...`: x, y and z of every joint of
-/// `skeleton`, joints in any order) and whose other lines are frames. With a first column `time` (seconds)
-/// the rate is taken from it, otherwise it is `rate`, in frames per second. Positions are world coordinates,
-/// y up, in the file's unit. Names and parents come from `skeleton`, offsets from the positions
+/// `skeleton`, joints in any order) and whose other lines are frames. Columns are separated by commas, or by
+/// ';' or tabs if the first line has no comma; numbers have a decimal point. With a first column `time`
+/// (seconds) the rate is taken from it, otherwise it is `rate`, in frames per second. Positions are world
+/// coordinates, y up, in the file's unit. Names and parents come from `skeleton`, offsets from the positions
 /// (with_offsets_of). Throws Error as `name:line: ...` for wrong columns, wrong numbers of fields, values
 /// that are not finite, and uneven times.
 inline PositionClip parse_position_csv(std::string_view text, const Skeleton& skeleton, double rate,
                                        std::string_view name) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  const char line_end = position_csv_detail::line_end_of(text);
+  const std::string_view header = position_csv_detail::take_line(text, line_end);
+  const char separator = position_csv_detail::separator_of(header);
   std::vector<std::string_view> fields;
-  position_csv_detail::split_fields(position_csv_detail::take_line(text), fields);
+  position_csv_detail::split_fields(header, separator, fields);
   const position_csv_detail::CsvColumns columns =
       position_csv_detail::parse_csv_header(fields, skeleton, name);
   const std::size_t width = fields.size(), shift = columns.time ? 1 : 0;
@@ -112,9 +126,9 @@ inline PositionClip parse_position_csv(std::string_view text, const Skeleton& sk
   std::vector<double> times;
   std::vector<std::size_t> lines;
   for (std::size_t line = 2; !text.empty(); ++line) {
-    const std::string_view raw = position_csv_detail::take_line(text);
+    const std::string_view raw = position_csv_detail::take_line(text, line_end);
     if (raw.find_first_not_of(" \t") == raw.npos) continue;
-    position_csv_detail::split_fields(raw, fields);
+    position_csv_detail::split_fields(raw, separator, fields);
     require(fields.size() == width, name, ":", line, ": found ", fields.size(), " fields, expected ", width,
             " as in the first line");
     const std::size_t frame = out.positions.size();
@@ -128,7 +142,8 @@ inline PositionClip parse_position_csv(std::string_view text, const Skeleton& sk
       if (!number || !std::isfinite(value))
         throw Error(name, ":", line, ": found '", fields[i].substr(0, 40), "' in column ", i + 1, " (",
                     i < shift ? std::string("time") : "joint '" + skeleton.joints[place / 3].name + "'",
-                    "), expected a finite number with a decimal point");
+                    "), expected a finite number with a decimal point",
+                    fields[i].find(',') == field.npos ? "" : ", not a decimal comma: write 1.5, not 1,5");
       if (i < shift)
         times.push_back(value);
       else
@@ -140,7 +155,8 @@ inline PositionClip parse_position_csv(std::string_view text, const Skeleton& sk
   require(out.frames > 0, name, ": found no frames below the header line, expected one per line");
   out.rate = times.size() > 1 ? position_csv_detail::rate_from_times(times, lines, name) : rate;
   require(std::isfinite(out.rate) && out.rate > 0, name, ": the rate is ", rate,
-          " frames per second, expected more than 0; give a rate, or add a first column 'time' in seconds");
+          " frames per second, expected more than 0; add a first column 'time' in seconds, or give the rate: "
+          "--rate or --fps on the command line, the argument `rate` in the API");
   out.skeleton = with_offsets_of(skeleton, out.positions);
   return out;
 }

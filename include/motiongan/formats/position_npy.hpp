@@ -120,7 +120,8 @@ inline PositionClip parse_position_npy(std::string_view bytes, const Skeleton& s
   require(cubic || flat, name, ": the shape is ", header.shape, ", expected [frames, ", joints,
           ", 3] or [frames, ", 3 * joints, "] for the ", joints, " joints of the bone list");
   require(std::isfinite(rate) && rate > 0, name, ": the rate is ", rate,
-          " frames per second, expected more than 0; an .npy file does not store it, so it must be given");
+          " frames per second, expected more than 0; an .npy file does not store it: give --rate or "
+          "--fps on the command line, the argument `rate` in the API");
   const std::size_t frames = header.shape.front(), size = single ? 4 : 8, row = 3 * joints * size;
   const std::size_t found = bytes.size() - header.data;
   require(frames > 0, name, ": found no frames, expected at least one");

@@ -13,11 +13,23 @@
 
 namespace motiongan::motion {
 
+/// Why a path that does not lead to a file does not: "is a dead link (to x.bvh)", "does not exist", or
+/// "cannot be reached: Permission denied".
+inline std::string why_missing(const std::filesystem::path& path) {
+  namespace fs = std::filesystem;
+  std::error_code problem, ignored;
+  const bool found = fs::status(path, problem).type() != fs::file_type::not_found;  // but out of reach
+  if (!found && fs::is_symlink(fs::symlink_status(path, ignored)))
+    return concat("is a dead link (to ", fs::read_symlink(path, ignored).string(), ")");
+  if (found) return concat("cannot be reached: ", problem.message());
+  return "does not exist";
+}
+
 /// The bytes of a file. `kind` is what messages call it, such as "BVH file". Throws Error if it cannot be
 /// read.
 inline std::string read_text(const std::filesystem::path& path, std::string_view kind) {
   std::error_code problem;
-  require(std::filesystem::exists(path, problem), kind, " ", path.string(), " does not exist");
+  if (!std::filesystem::exists(path, problem)) throw Error(kind, " ", path.string(), " ", why_missing(path));
   require(!std::filesystem::is_directory(path, problem), path.string(), " is a folder, expected a ", kind);
   std::ifstream in(path, std::ios::binary | std::ios::ate);
   require(in.good(), kind, " ", path.string(), " cannot be opened; is it readable?");

@@ -126,4 +126,16 @@ inline void fields_from_text(const FieldList& fields, const std::string& text, c
       detail::field_from_json(field, *found, where);
 }
 
+/// Whether two formats, as in files, are those of the same data. One written before units and axes were kept
+/// has none to compare.
+inline bool same_format(const std::string& then, const std::string& now) {
+  if (then == now) return true;
+  const nlohmann::json before = nlohmann::json::parse(then, nullptr, false);
+  nlohmann::json after = nlohmann::json::parse(now, nullptr, false);
+  if (!before.is_object() || !after.is_object()) return false;
+  for (const char* key : {"unit_metres", "clips_up"})
+    if (!before.contains(key)) after.erase(key);
+  return before == after;
+}
+
 }  // namespace motiongan::io

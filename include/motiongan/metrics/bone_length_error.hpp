@@ -2,6 +2,7 @@
 #pragma once
 #include "motiongan/metrics/position_metrics.hpp"
 #include "motiongan/motion/kinematics.hpp"
+#include "motiongan/motion/root_joint.hpp"
 
 namespace motiongan {
 

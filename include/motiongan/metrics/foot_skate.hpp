@@ -1,19 +1,17 @@
 // Foot skating: how often feet slide over the floor.
 #pragma once
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/metrics/statistics_measure.hpp"
-#include "motiongan/motion/body_side.hpp"
+#include "motiongan/motion/feet.hpp"
 #include "motiongan/motion/kinematics.hpp"
 
 namespace motiongan {
@@ -46,83 +44,9 @@ struct FootSkate {
   }
 };
 
-namespace foot_skate_detail {
-
-inline std::string joint_names(const motion::Skeleton& skeleton) {
-  std::string all;
-  for (const motion::Joint& joint : skeleton.joints) all += (all.empty() ? "" : ", ") + joint.name;
-  return all;
-}
-
-/// A left and a right foot, or nothing if not both are found.
-inline std::vector<std::size_t> feet_by_name(const motion::Skeleton& skeleton) {
-  std::vector<std::string> names;
-  for (const motion::Joint& joint : skeleton.joints) {
-    std::string& name = names.emplace_back(joint.name);
-    for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  for (const std::string_view part : {"toe", "foot", "ankle"}) {
-    std::optional<std::size_t> left, right;
-    for (std::size_t j = 0; j < names.size(); ++j) {
-      if (names[j].find(part) == std::string::npos) continue;
-      const motion::Side side = motion::side_of(skeleton.joints[j].name);
-      if (side == motion::Side::left && !left) left = j;
-      if (side == motion::Side::right && !right) right = j;
-    }
-    if (left && right) return {*left, *right};
-  }
-  return {};
-}
-
-}  // namespace foot_skate_detail
-
-/// Whether find_feet(skeleton) succeeds.
-inline bool has_feet(const motion::Skeleton& skeleton) {
-  return !foot_skate_detail::feet_by_name(skeleton).empty();
-}
-
-/// Finds the feet of a skeleton by joint name: the first toe ("LeftToeBase", "Toes_L") of each side, or else
-/// the first foot, or else the first ankle. Throws Error, listing the joint names, if there are none.
-inline std::vector<std::size_t> find_feet(const motion::Skeleton& skeleton) {
-  std::vector<std::size_t> feet = foot_skate_detail::feet_by_name(skeleton);
-  require(!feet.empty(),
-          "no joint names contain a side and toe, foot or ankle (such as LeftToeBase, Toes_L); name the feet "
-          "yourself, two of: ",
-          foot_skate_detail::joint_names(skeleton));
-  return feet;
-}
-
-/// The joints of the given names, or find_feet(skeleton) if there are none. Throws Error for an unknown name.
-inline std::vector<std::size_t> find_feet(const motion::Skeleton& skeleton,
-                                          std::span<const std::string> names) {
-  if (names.empty()) return find_feet(skeleton);
-  std::vector<std::size_t> out;
-  for (const std::string& name : names) {
-    const int at = skeleton.find(name);
-    require(at >= 0, "there is no joint '", name,
-            "' to use as a foot; the skeleton has: ", foot_skate_detail::joint_names(skeleton));
-    out.push_back(static_cast<std::size_t>(at));
-  }
-  return out;
-}
-
-/// Leg length in the file's unit: along the rest pose's bones from the nearest common ancestor of all feet to
-/// each foot, averaged over feet. Throws Error if it is 0.
-inline double leg_length(const motion::Skeleton& skeleton, std::span<const std::size_t> feet) {
-  std::vector<std::size_t> below(skeleton.size(), 0);  // number of feet below each joint
-  for (const std::size_t foot : feet)
-    for (int j = static_cast<int>(foot); j >= 0; j = skeleton.joints[static_cast<std::size_t>(j)].parent)
-      ++below[static_cast<std::size_t>(j)];
-  double sum = 0;
-  for (const std::size_t foot : feet)
-    for (std::size_t j = foot; skeleton.joints[j].parent >= 0;
-         j = static_cast<std::size_t>(skeleton.joints[j].parent)) {
-      if (feet.size() > 1 && below[j] == feet.size()) break;
-      sum += motion::length(skeleton.joints[j].offset);
-    }
-  require(sum > 0, "the legs of the skeleton have no length; give the size of the file's unit in metres");
-  return sum / static_cast<double>(feet.size());
-}
+using motion::find_feet;
+using motion::has_feet;
+using motion::leg_length;
 
 /// Foot skating as measured by Karunratanakul et al. 2023 (GMD) and Xie et al. 2024 (OmniControl): the
 /// fraction of steps between consecutive frames in which a foot is near the floor (below 5 cm) in both

@@ -12,6 +12,7 @@
 #include "motiongan/core/error.hpp"
 #include "motiongan/data/pose.hpp"
 #include "motiongan/motion/kinematics.hpp"
+#include "motiongan/motion/root_joint.hpp"
 
 namespace motiongan::motion {
 

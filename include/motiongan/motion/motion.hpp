@@ -8,21 +8,12 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
+#include "motiongan/motion/frame_rate.hpp"
 #include "motiongan/motion/kinematics.hpp"
 #include "motiongan/motion/rotation.hpp"
 #include "motiongan/motion/skeleton.hpp"
 
 namespace motiongan::motion {
-
-/// Frames per second for a frame time (seconds) as printed in files: 0.0083333 gives 120. A rate within 0.05%
-/// of an integer becomes that integer (29.97 and 59.94, which are 0.1% off, stay as they are). Throws Error
-/// unless the frame time is positive and finite.
-inline double rate_from_frame_time(double frame_time) {
-  require(std::isfinite(frame_time) && frame_time > 0, "frame time ", frame_time,
-          " seconds, expected a positive number");
-  const double rate = 1.0 / frame_time, whole = std::round(rate);
-  return std::abs(rate - whole) <= 5e-4 * rate ? whole : rate;
-}
 
 /// A clip's channels as local rotations and positions. A position channel replaces that component of the
 /// joint's offset; joints without rotation channels do not rotate. Throws Error if the number of channel

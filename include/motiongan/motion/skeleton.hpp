@@ -64,7 +64,8 @@ struct Clip {
   Skeleton skeleton;
   double frame_time = 0;  ///< seconds
   std::size_t frames = 0;
-  std::vector<double> channels;  ///< [frames, skeleton.channel_count()], degrees and length units
+  std::vector<double> channels;    ///< [frames, skeleton.channel_count()], degrees and length units
+  std::vector<std::string> notes;  ///< what the reader corrected or ignored, one sentence each
 
   double rate() const { return 1.0 / frame_time; }
 };

@@ -10,6 +10,12 @@
 
 namespace motiongan::motion {
 
+/// Whether joint_differences is empty: names, parents and order are the same.
+inline bool have_same_joints(const Skeleton& a, const Skeleton& b) {
+  return std::equal(a.joints.begin(), a.joints.end(), b.joints.begin(), b.joints.end(),
+                    [](const Joint& x, const Joint& y) { return x.name == y.name && x.parent == y.parent; });
+}
+
 /// Differences of `other` from `expected`, one entry per joint: missing, extra, renamed (another name at the
 /// same index and under the same parent), under another parent or, if nothing else differs, in a different
 /// order. Empty if a pose of one skeleton is a pose of the other. Offsets and channels may differ.
@@ -22,11 +28,7 @@ inline std::vector<std::string> joint_differences(const Skeleton& expected, cons
     return parent.empty() ? std::string("no parent") : "parent '" + parent + "'";
   };
   const std::size_t common = std::min(expected.size(), other.size());
-  bool same = expected.size() == other.size();
-  for (std::size_t j = 0; same && j < common; ++j)
-    same = expected.joints[j].name == other.joints[j].name &&
-           expected.joints[j].parent == other.joints[j].parent;
-  if (same) return {};
+  if (have_same_joints(expected, other)) return {};
 
   const auto renamed = [&](std::size_t j) {
     return j < common && expected.joints[j].parent == other.joints[j].parent &&
@@ -64,43 +66,21 @@ inline std::vector<std::string> joint_differences(const Skeleton& expected, cons
   return out;
 }
 
-namespace detail {
-
-[[noreturn]] inline void throw_different(const std::vector<std::string>& differences,
-                                         const Skeleton& expected, const Skeleton& other,
-                                         const std::string& what, const std::string& advice) {
-  constexpr std::size_t shown = 8;
+/// The first `most` of the texts, separated by semicolons, and how many more there are.
+inline std::string some_of(const std::vector<std::string>& texts, std::size_t most) {
   std::string list;
-  for (std::size_t i = 0; i < std::min(differences.size(), shown); ++i)
-    list += (i > 0 ? "; " : "") + differences[i];
-  if (differences.size() > shown) list += concat("; and ", differences.size() - shown, " more");
-  throw Error(what, " has a different skeleton (", other.size(), " joints, expected ", expected.size(),
-              "): ", list, ". ", advice);
+  for (std::size_t i = 0; i < std::min(texts.size(), most); ++i) list += (i > 0 ? "; " : "") + texts[i];
+  if (texts.size() > most) list += concat("; and ", texts.size() - most, " more");
+  return list;
 }
-
-}  // namespace detail
 
 /// Throws Error, listing the first eight differences, unless both skeletons have the same joints. `what`
 /// names the owner of `other` in the message, such as "the prior walk.bvh".
 inline void require_same_joints(const Skeleton& expected, const Skeleton& other, const std::string& what) {
   const std::vector<std::string> differences = joint_differences(expected, other);
-  if (!differences.empty())
-    detail::throw_different(
-        differences, expected, other, what,
-        "Use motion of the skeleton that the model was trained on; bone lengths may differ");
-}
-
-/// The same for two clips of a data set, whose joints must also have the same channels; `owner` is whose the
-/// expected skeleton is.
-inline void require_same_channels(const Skeleton& expected, const Skeleton& other, const std::string& what,
-                                  const std::string& owner) {
-  std::vector<std::string> differences = joint_differences(expected, other);
-  for (std::size_t j = 0; differences.empty() && j < expected.size(); ++j)
-    if (expected.joints[j].channels != other.joints[j].channels)
-      differences.push_back("'" + expected.joints[j].name + "' has different channels");
-  if (!differences.empty())
-    detail::throw_different(differences, expected, other, what,
-                            "A data set needs one skeleton, that of " + owner + "; bone lengths may differ");
+  require(differences.empty(), what, " has a different skeleton (", other.size(), " joints, expected ",
+          expected.size(), "): ", some_of(differences, 8),
+          ". Use motion of the skeleton that the model was trained on; bone lengths may differ");
 }
 
 }  // namespace motiongan::motion

@@ -1,6 +1,6 @@
 // Updates the search index of a folder: reads new and changed files, keeps the rest.
 #pragma once
-#include "motiongan/formats/bvh_reader.hpp"
+#include "motiongan/formats/read_motion.hpp"
 #include "motiongan/search/index.hpp"
 
 namespace motiongan {
@@ -18,8 +18,9 @@ struct SearchCollection {
 
 /// The default index file of a folder: one for each motion format.
 inline std::filesystem::path search_index_file(const std::filesystem::path& folder,
-                                               const motion::MotionFormat& format) {
-  const std::string key = search_key(format);
+                                               const motion::MotionFormat& format,
+                                               const motion::ClipOptions& clips = {}) {
+  const std::string key = search_key(format, clips);
   return folder / ".motiongan-search" /
          (search_detail::hexadecimal(search_detail::digest(key.data(), key.size())) + ".safetensors");
 }
@@ -27,23 +28,23 @@ inline std::filesystem::path search_index_file(const std::filesystem::path& fold
 namespace search_detail {
 
 /// A clip's normalised poses [frames, dof] at the model's rate; fills in `clip`. Returns nothing for a file
-/// that cannot be used and gives the reason in `clip.left_out`.
+/// that cannot be used and gives the reason in `clip.left_out`. `size` is what lengths were multiplied by.
 inline std::vector<float> encode_file(const std::filesystem::path& path, const motion::MotionFormat& format,
-                                      SearchClip& clip) {
+                                      const motion::ClipOptions& how, SearchClip& clip, double& size) {
   std::vector<float> poses;
   try {
-    motion::Clip bvh = motion::read_bvh(path);
-    format.require_skeleton(bvh.skeleton, "the clip " + clip.path);
-    const double frame_time = bvh.frame_time;
-    const std::size_t dropped = motion::drop_first_frames(bvh, motion::FirstFrame::automatic);
-    clip.begin = static_cast<double>(dropped) * frame_time;
+    motion::LoadedMotion loaded = motion::read_motion(path, how);
+    format.require_skeleton(loaded.motion.skeleton, "the clip " + clip.path);
+    clip.begin = static_cast<double>(loaded.dropped) / loaded.motion.rate;
+    size = motion::scale_to(format.skeleton(), loaded.motion.skeleton);
+    if (size != 1) loaded.motion = motion::scaled(std::move(loaded.motion), size);
     motion::DatasetOptions options;
     options.frames = format.frames;
     options.rate = format.rate;
     options.root_position = format.layout.root_position();
     options.root_rotation = format.layout.root_rotation();
     const motion::EncodedClip encoded =
-        encode_clip(motion::to_motion(bvh), options, 0, static_cast<int>(format.layout.root()));
+        encode_clip(std::move(loaded.motion), options, 0, static_cast<int>(format.layout.root()));
     const std::size_t dof = format.layout.dof();
     std::vector<double> rows;  // every stride-th frame, as in a data set's windows
     for (std::size_t f = 0; f < encoded.frames; f += encoded.stride)
@@ -77,12 +78,13 @@ inline bool looks_like_index(const std::filesystem::path& path) {
 /// `file` is something else.
 inline std::optional<SearchIndex> old_index(const std::filesystem::path& file, bool is_ours,
                                             const motion::MotionFormat& format,
+                                            const motion::ClipOptions& clips,
                                             std::vector<std::string>& warnings) {
   if (!std::filesystem::exists(file)) return std::nullopt;
   require(is_ours || looks_like_index(file), file.string(),
           " is not a search index and will not be replaced by one; give --index another file");
   try {
-    std::optional<SearchIndex> index = SearchIndex::read(file, format);
+    std::optional<SearchIndex> index = SearchIndex::read(file, format, clips);
     if (!index)
       warnings.push_back(
           concat("the index ", file.string(), " was made for another model's format; rebuilding it"));
@@ -95,8 +97,8 @@ inline std::optional<SearchIndex> old_index(const std::filesystem::path& file, b
 
 }  // namespace search_detail
 
-/// Opens the index of all BVH files in a folder and its subfolders, or of one file, for models of this
-/// format.
+/// Opens the index of all motion files in a folder and its subfolders, or of one file, for models of this
+/// format. `options` say how the files are read; clips of another size are scaled to the model's.
 ///
 /// The index is stored in `file`, by default search_index_file(). Files whose size and modification time are
 /// unchanged are not read again. Clips shorter than a window, unreadable files and files of another skeleton
@@ -105,13 +107,20 @@ inline std::optional<SearchIndex> old_index(const std::filesystem::path& file, b
 /// if `file` exists and is not an index.
 inline SearchCollection open_search_collection(const std::filesystem::path& folder,
                                                const motion::MotionFormat& format,
-                                               const std::filesystem::path& file = {}) {
+                                               const std::filesystem::path& file = {},
+                                               const motion::ClipOptions& options = {}) {
   namespace fs = std::filesystem;
-  const std::vector<fs::path> files = motion::find_clip_files(folder);
+  const std::vector<fs::path> files = motion::find_motion_files(folder, {options.bones});
   const fs::path home = fs::is_directory(folder) ? folder : folder.parent_path();
-  SearchCollection out{
-      SearchIndex(format), file.empty() ? search_index_file(home, format) : file, 0, 0, 0, false, {}};
-  std::optional<SearchIndex> before = search_detail::old_index(out.file, file.empty(), format, out.warnings);
+  SearchCollection out{SearchIndex(format, options),
+                       file.empty() ? search_index_file(home, format, options) : file,
+                       0,
+                       0,
+                       0,
+                       false,
+                       {}};
+  std::optional<SearchIndex> before =
+      search_detail::old_index(out.file, file.empty(), format, options, out.warnings);
   std::map<std::string_view, const SearchClip*> known;
   if (before)
     for (const SearchClip& clip : before->clips()) known[clip.path] = &clip;
@@ -134,9 +143,10 @@ inline SearchCollection open_search_collection(const std::filesystem::path& fold
       changed.push_back(i);
   }
   std::vector<std::vector<float>> poses(files.size());
+  std::vector<double> sizes(files.size(), 1);
   motion::in_two_threads(changed.size(), [&](std::size_t c) {
     const std::size_t i = changed[c];
-    poses[i] = search_detail::encode_file(files[i], format, clips[i]);
+    poses[i] = search_detail::encode_file(files[i], format, options, clips[i], sizes[i]);
   });
   out.read = changed.size();
   out.kept = files.size() - changed.size();
@@ -164,6 +174,12 @@ inline SearchCollection open_search_collection(const std::filesystem::path& fold
                  "); give --index a writable FILE"));
     }
   }
+  const auto resized = std::find_if(sizes.begin(), sizes.end(), [](double size) { return size != 1; });
+  if (resized != sizes.end())
+    out.warnings.push_back(
+        concat(std::count_if(sizes.begin(), sizes.end(), [](double size) { return size != 1; }),
+               " files are scaled by leg length to the model's size; the first, ",
+               clips[static_cast<std::size_t>(resized - sizes.begin())].path, ", by ", *resized));
   const std::string* reason = nullptr;
   std::size_t left_out = 0;
   for (const SearchClip& clip : out.index.clips())

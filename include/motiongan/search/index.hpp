@@ -14,7 +14,6 @@
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/data/clip_source.hpp"
-#include "motiongan/data/first_frame.hpp"
 #include "motiongan/data/motion_format_json.hpp"
 #include "motiongan/io/safetensors.hpp"
 #include "motiongan/search/distance.hpp"
@@ -39,9 +38,12 @@ struct SearchWindow {
 
 /// The parts of a motion format that determine how a clip is encoded: models that agree in them share an
 /// index.
-inline std::string search_key(const motion::MotionFormat& format) {
+inline std::string search_key(const motion::MotionFormat& format, const motion::ClipOptions& clips = {}) {
   nlohmann::json key = io::to_json(format);
-  for (const char* part : {"vocabulary", "low", "high"}) key.erase(part);
+  for (const char* part : {"vocabulary", "low", "high", "unit_metres", "clips_up"}) key.erase(part);
+  motion::ClipOptions how = clips, usual;
+  const nlohmann::json given = io::fields_to_json(fields_of(how));
+  if (given != io::fields_to_json(fields_of(usual))) key["clips"] = given;
   return key.dump();
 }
 
@@ -131,7 +133,8 @@ class IndexFile {
 /// The clips of a collection in a model's format.
 class SearchIndex {
  public:
-  explicit SearchIndex(const motion::MotionFormat& format) : format_(format), layout_(format) {}
+  explicit SearchIndex(const motion::MotionFormat& format, const motion::ClipOptions& clips = {})
+      : format_(format), reading_(clips), layout_(format) {}
 
   const motion::MotionFormat& format() const { return format_; }
   const SearchLayout& layout() const { return layout_; }
@@ -211,19 +214,20 @@ class SearchIndex {
                     {"track", SafeTensor::of({rows_, layout_.track.size()}, frames_.track)}};
     file.metadata = {{"checksum", search_detail::checksum(file)},
                      {search_detail::version_key, search_detail::version},
-                     {"search_format", search_key(format_)}};
+                     {"search_format", search_key(format_, reading_)}};
     file.write(path);
   }
 
   /// Reads an index written by write(); nothing if it was written for another format. Throws Error, saying
   /// what is wrong, if the file is damaged or not an index.
   static std::optional<SearchIndex> read(const std::filesystem::path& path,
-                                         const motion::MotionFormat& format) {
+                                         const motion::MotionFormat& format,
+                                         const motion::ClipOptions& clips = {}) {
     search_detail::IndexFile file(path);
     require(file.metadata(search_detail::version_key) == search_detail::version, path.string(),
             ": not a search index of this version");
-    if (file.metadata("search_format") != search_key(format)) return std::nullopt;
-    SearchIndex index(format);
+    if (file.metadata("search_format") != search_key(format, clips)) return std::nullopt;
+    SearchIndex index(format, clips);
     const auto begin = file.values<double>("begin", "F64");
     const auto frames = file.values<std::int64_t>("frames", "I64");
     const auto modified = file.values<std::int64_t>("modified", "I64");
@@ -259,6 +263,7 @@ class SearchIndex {
 
  private:
   motion::MotionFormat format_;
+  motion::ClipOptions reading_;
   SearchLayout layout_;
   std::vector<SearchClip> clips_;
   SearchFrames frames_;

@@ -132,7 +132,9 @@ class ModelTrainer : public Trainer {
             "; give the options of its first start, or choose another folder");
     detail::require_same_options(fields_of(model_then), fields_of(model_now), where);
     const auto format = file.metadata.find("format");
-    require(format != file.metadata.end() && format->second == Model::write_format(model_.format()), where,
+    require(format != file.metadata.end() &&
+                io::same_format(format->second, Model::write_format(model_.format())),
+            where,
             ": the run was started with other data (\"format\" differs); give the data and options of its "
             "first start, or choose another folder for a new run");
     const auto text = file.metadata.find("training");

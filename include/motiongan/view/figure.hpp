@@ -11,6 +11,7 @@
 #include "motiongan/core/error.hpp"
 #include "motiongan/motion/body_side.hpp"
 #include "motiongan/motion/kinematics.hpp"
+#include "motiongan/motion/root_joint.hpp"
 #include "motiongan/motion/skeleton.hpp"
 
 namespace motiongan::view {

@@ -1,0 +1,168 @@
+// Finding and dropping the rest pose or T-pose that some conversions prepend to a clip.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "motiongan/core/fields.hpp"
+#include "motiongan/motion/body_side.hpp"
+#include "motiongan/motion/feet.hpp"
+#include "motiongan/motion/kinematics.hpp"
+#include "motiongan/motion/rotation.hpp"
+#include "motiongan/motion/skeleton.hpp"
+
+namespace motiongan::motion {
+
+/// What to do with a clip's first frame, which in the CMU conversions is an added T-pose.
+enum class FirstFrame {
+  automatic,  ///< drop the frames that t_pose_frames finds
+  keep,
+  drop  ///< always drop frame 0
+};
+constexpr NameTable<FirstFrame, 3> enum_names(FirstFrame) {
+  return {{{FirstFrame::automatic, "auto"}, {FirstFrame::keep, "keep"}, {FirstFrame::drop, "drop"}}};
+}
+
+namespace first_frame_detail {
+
+constexpr std::size_t most_posed = 4;
+
+/// Mean rotation angle of all joints from the rest pose, in degrees.
+inline double from_rest(const Motion& motion, std::size_t frame) {
+  double sum = 0;
+  for (std::size_t j = 0; j < motion.skeleton.size(); ++j)
+    sum += degrees(angle_between(Quat{}, motion.rotation(frame, j)));
+  return sum / static_cast<double>(motion.skeleton.size());
+}
+
+/// Mean change of all joints' rotations between two frames, in degrees.
+inline double step_between(const Motion& motion, std::size_t a, std::size_t b) {
+  double sum = 0;
+  for (std::size_t j = 0; j < motion.skeleton.size(); ++j)
+    sum += degrees(angle_between(motion.rotation(a, j), motion.rotation(b, j)));
+  return sum / static_cast<double>(motion.skeleton.size());
+}
+
+/// The step that 99 % of the steps from frame `first` on do not exceed, from at most 400 of them.
+inline double usual_step(const Motion& motion, std::size_t first) {
+  std::vector<double> steps;
+  const std::size_t hop = 1 + motion.frames / 400;
+  for (std::size_t f = first; f + 1 < motion.frames; f += hop)
+    steps.push_back(step_between(motion, f, f + 1));
+  if (steps.empty()) return 0;
+  const auto at = steps.begin() + static_cast<std::ptrdiff_t>((steps.size() - 1) * 99 / 100);
+  std::nth_element(steps.begin(), at, steps.end());
+  return *at;
+}
+
+/// How far the chain from joint `from` down to `to` is stretched: the distance of its ends as a fraction of
+/// its length.
+inline double straightness(const Motion& motion, const std::vector<Vec3>& positions, std::size_t from,
+                           std::size_t to) {
+  double bones = 0;
+  for (std::size_t j = to; j != from; j = static_cast<std::size_t>(motion.skeleton.joints[j].parent)) {
+    if (motion.skeleton.joints[j].parent < 0) return 0;
+    bones += length(motion.position(0, j));
+  }
+  return bones > 0 ? length(subtract(positions[to], positions[from])) / bones : 0;
+}
+
+/// Whether frame 0 is a T-pose or an A-pose whatever the rest pose is: both arms, from the upper arm to the
+/// hand, are straight, mirrored, and raised by at least 20 degrees from hanging, and both legs are straight.
+inline bool is_t_or_a_pose(const Motion& motion) {
+  const Skeleton& skeleton = motion.skeleton;
+  const std::vector<std::size_t> feet = feet_detail::feet_by_name(skeleton);
+  if (feet.size() != 2) return false;
+  std::vector<int> hands(2, -1), arms(2, -1), thighs(2, -1);
+  for (std::size_t j = 0; j < skeleton.size(); ++j) {
+    const Side side = side_of(skeleton.joints[j].name);
+    if (side == Side::centre) continue;
+    const std::string name = feet_detail::lower_case(skeleton.joints[j].name);
+    const std::size_t s = side == Side::left ? 0 : 1;
+    const bool hand = name.find("hand") != name.npos || name.find("wrist") != name.npos;
+    if (hand && hands[s] < 0) hands[s] = static_cast<int>(j);
+  }
+  if (hands[0] < 0 || hands[1] < 0) return false;
+  // A limb is two bones: the joint two above the hand (the upper arm), and two above the ankle (the thigh).
+  const auto above = [&](int j, int count) {
+    for (; j >= 0 && count > 0; --count) j = skeleton.joints[static_cast<std::size_t>(j)].parent;
+    return j;
+  };
+  const Motion first{
+      skeleton,
+      motion.rate,
+      1,
+      {motion.rotations.begin(), motion.rotations.begin() + static_cast<std::ptrdiff_t>(skeleton.size())},
+      {motion.positions.begin(), motion.positions.begin() + static_cast<std::ptrdiff_t>(skeleton.size())}};
+  const std::vector<Vec3> p = joint_positions(first);
+  Vec3 sides[2];
+  for (std::size_t s = 0; s < 2; ++s) {
+    arms[s] = above(hands[s], 2);
+    const bool toe = feet_detail::lower_case(skeleton.joints[feet[s]].name).find("toe") != std::string::npos;
+    const int ankle = toe ? above(static_cast<int>(feet[s]), 1) : static_cast<int>(feet[s]);
+    thighs[s] = above(ankle, 2);
+    if (arms[s] < 0 || thighs[s] < 0) return false;
+    const auto arm = static_cast<std::size_t>(arms[s]), hand = static_cast<std::size_t>(hands[s]);
+    if (straightness(motion, p, arm, hand) < 0.98 ||
+        straightness(motion, p, static_cast<std::size_t>(thighs[s]), static_cast<std::size_t>(ankle)) < 0.99)
+      return false;
+    const Vec3 leg = subtract(p[static_cast<std::size_t>(ankle)], p[static_cast<std::size_t>(thighs[s])]);
+    sides[s] = subtract(p[hand], p[arm]);
+    const double hanging = dot(sides[s], leg) / (length(sides[s]) * length(leg));
+    if (hanging > std::cos(radians(20))) return false;
+  }
+  // Arms mirrored: their sum lies in the body's plane of symmetry, their difference across it.
+  const Vec3 across =
+      subtract(p[static_cast<std::size_t>(thighs[0])], p[static_cast<std::size_t>(thighs[1])]);
+  const Vec3 both = add(sides[0], sides[1]);
+  const double width = length(across), arm = length(sides[0]);
+  return width > 0 && std::abs(dot(both, across)) < 0.1 * width * arm;
+}
+
+}  // namespace first_frame_detail
+
+/// Number of frames at the start that are a pose prepended to the motion, at most four: frames close to the
+/// rest pose (joints turned by less than 15 degrees on average), or a first frame in a T-pose or A-pose,
+/// followed by a jump far outside the clip's own steps. The jump is the mean over all joints; it must exceed
+/// one degree, and the clip's 99th percentile by a factor of 3, or of 1.5 after a pose within 5 degrees of
+/// rest. 0 if the clip starts with its motion.
+inline std::size_t t_pose_frames(const Motion& motion) {
+  namespace detail = first_frame_detail;
+  check_motion(motion);
+  double rest[detail::most_posed]{};
+  std::size_t posed = 0;
+  while (posed < detail::most_posed && posed + 1 < motion.frames) {
+    rest[posed] = detail::from_rest(motion, posed);
+    if (rest[posed] >= 15) break;
+    ++posed;
+  }
+  const bool t_pose = posed == 0 && motion.frames > 1 && detail::is_t_or_a_pose(motion);
+  const auto jumps_after = [&](std::size_t count) {
+    if (count + 1 >= motion.frames) return false;  // no step to compare with
+    const double jump = detail::step_between(motion, count - 1, count);
+    const double factor = !t_pose && rest[count - 1] < 5 ? 1.5 : 3;
+    return jump > 1 && jump > factor * detail::usual_step(motion, count);
+  };
+  const std::size_t last = t_pose ? 1 : posed;
+  std::size_t count = 1;
+  while (count <= last && !jumps_after(count)) ++count;
+  if (count > last) return 0;
+  // A second pose, or a blend of the pose and the motion as resampling makes it, jumps too.
+  while (count < last && jumps_after(count + 1)) ++count;
+  return count;
+}
+
+/// Removes the first frames according to `rule`; returns how many.
+inline std::size_t drop_first_frames(Motion& motion, FirstFrame rule) {
+  std::size_t count = 0;
+  if (rule == FirstFrame::automatic) count = t_pose_frames(motion);
+  if (rule == FirstFrame::drop) count = std::min<std::size_t>(1, motion.frames);
+  const auto values = static_cast<std::ptrdiff_t>(count * motion.skeleton.size());
+  motion.rotations.erase(motion.rotations.begin(), motion.rotations.begin() + values);
+  motion.positions.erase(motion.positions.begin(), motion.positions.begin() + values);
+  motion.frames -= count;
+  return count;
+}
+
+}  // namespace motiongan::motion

@@ -1,0 +1,78 @@
+// Poses prepended to a motion: found by what they are, and dropped.
+#include "motiongan/motion/first_frame.hpp"
+
+#include <doctest/doctest.h>
+
+#include <vector>
+
+#include "../support/bodies.hpp"
+#include "motiongan/motion/motion.hpp"
+
+using namespace motiongan;
+using namespace motiongan::motion;
+
+namespace {
+
+/// Two joints; each frame gives x, y, the root's z rotation, and the arm's z and x rotations.
+Motion with(const std::vector<std::vector<double>>& frames) {
+  Clip clip;
+  clip.skeleton.joints = {
+      {"Hips", -1, {0, 1, 0}, {Channel::x_position, Channel::y_position, Channel::z_rotation}, {}},
+      {"Arm", 0, {1, 0, 0}, {Channel::z_rotation, Channel::x_rotation}, {}}};
+  clip.frame_time = 0.01;
+  clip.frames = frames.size();
+  for (const auto& f : frames) clip.channels.insert(clip.channels.end(), f.begin(), f.end());
+  return to_motion(clip);
+}
+
+}  // namespace
+
+TEST_CASE("a rest pose before a jump is found and dropped") {
+  const std::vector<double> zero{1.5, 2.5, 0, 0, 0}, posed{1, 2, -21.5, 0, 0};
+  const std::vector<double> a{1, 2, 30.25, 0, 4.5}, b{1, 2, 30.5, 0.25, 4.5}, c{1, 2, 31, 0.25, 4.5};
+  CHECK(t_pose_frames(with({zero, a, b, c})) == 1);
+  CHECK(t_pose_frames(with({posed, a, b, c})) == 1);        // angles need not be whole degrees
+  CHECK(t_pose_frames(with({posed, zero, a, b, c})) == 2);  // as the CMU clip 07_12 has it
+  CHECK(t_pose_frames(with({zero, zero, a, b, c})) == 2);
+  CHECK(t_pose_frames(with({a, b, c})) == 0);
+  CHECK(t_pose_frames(with({zero, zero, zero})) == 0);  // a clip at rest is no pose before a motion
+  CHECK(t_pose_frames(with({zero})) == 0);
+  CHECK(t_pose_frames(with({})) == 0);
+  CHECK(t_pose_frames(with({zero, zero, zero, zero, zero, a, b})) == 0);             // rests, then moves
+  CHECK(t_pose_frames(with({zero, {1, 2, 0.25, 0, 0.5}, {1, 2, 0.5, 0, 1}})) == 0);  // starts smoothly
+  CHECK(t_pose_frames(with({zero, {1, 2, 5.5, 0, 0}, {1, 2, 11, 0, 0}})) == 0);
+  CHECK(t_pose_frames(with({{1, 2, 70, 2, 3}, {1, 2, 10, 0, 0}, {1, 2, 10.5, 0, 0}})) == 0);  // not at rest
+
+  Motion dropped = with({posed, a, b});
+  CHECK(drop_first_frames(dropped, FirstFrame::keep) == 0);
+  CHECK(drop_first_frames(dropped, FirstFrame::automatic) == 1);
+  CHECK(dropped.frames == 2);
+  CHECK(dropped.rotations == with({a, b}).rotations);
+  CHECK(dropped.positions == with({a, b}).positions);
+  CHECK(drop_first_frames(dropped, FirstFrame::automatic) == 0);
+  CHECK(drop_first_frames(dropped, FirstFrame::drop) == 1);
+  CHECK(dropped.rotations == with({b}).rotations);
+  CHECK(drop_first_frames(dropped, FirstFrame::drop) == 1);
+  CHECK(drop_first_frames(dropped, FirstFrame::drop) == 0);
+}
+
+TEST_CASE("a T-pose or A-pose is found whatever the rest pose is") {
+  for (const double raised : {90.0, 45.0}) {
+    CAPTURE(raised);
+    Motion motion = standing_body(60);
+    CHECK(t_pose_frames(motion) == 0);
+    prepend_arms(motion, raised);
+    const Motion turned = with_turned_axes(motion);
+    CHECK(first_frame_detail::from_rest(turned, 0) > 30);
+    CHECK(t_pose_frames(turned) == 1);
+    // The same pose at the start of a motion that leaves it slowly is part of the motion.
+    Motion slow = standing_body(60);
+    for (std::size_t f = 0; f < slow.frames; ++f) set_arms(slow, f, raised - 0.5 * static_cast<double>(f));
+    CHECK(t_pose_frames(with_turned_axes(slow)) == 0);
+  }
+  // Hanging arms are how people stand: no pose of a converter.
+  Motion hanging = standing_body(60);
+  prepend_arms(hanging, 5);
+  for (std::size_t f = 1; f < hanging.frames; ++f) set_arms(hanging, f, 60);
+  CHECK(t_pose_frames(with_turned_axes(hanging)) == 0);
+}
