@@ -51,11 +51,12 @@ std::vector<Captioned> captions_of(const fs::path& file, const std::vector<motio
 }
 
 ClipFacts read_facts(const fs::path& file, const std::string& id, const motion::ClipOptions& options) {
-  motion::LoadedMotion loaded = motion::read_motion(file, options);
+  motion::InspectedMotion found = motion::inspect_motion(file, options);
+  motion::LoadedMotion& loaded = found.loaded;
   ClipFacts out;
   out.id = id;
   out.posed = loaded.dropped;
-  out.frames = loaded.motion.frames;
+  out.frames = found.frames;
   out.rate = loaded.motion.rate;
   out.skeleton = std::move(loaded.motion.skeleton);
   out.height = motion::body_height(out.skeleton);

@@ -56,6 +56,28 @@ TEST_CASE("a rest pose before a jump is found and dropped") {
   CHECK(drop_first_frames(dropped, FirstFrame::drop) == 0);
 }
 
+TEST_CASE("a sample of frames tells the same as all of them") {
+  for (const std::size_t frames : {std::size_t{300}, std::size_t{1000}, std::size_t{1001}}) {
+    Motion motion = standing_body(frames);
+    prepend_arms(motion, 90);
+    const std::vector<std::size_t> sample = sampled_frames(motion.frames);
+    REQUIRE(sample.size() < 300);
+    Motion thin = motion;
+    thin.frames = sample.size();
+    thin.rotations.clear(), thin.positions.clear();
+    for (const std::size_t f : sample)
+      for (std::size_t j = 0; j < motion.skeleton.size(); ++j) {
+        thin.rotations.push_back(motion.rotation(f, j));
+        thin.positions.push_back(motion.position(f, j));
+      }
+    CHECK(t_pose_frames(motion) == 1);
+    CHECK(t_pose_frames(thin, 2) == 1);
+    CHECK(first_frame_detail::usual_step(thin, 1, 2) ==
+          first_frame_detail::usual_step(motion, 1, first_frame_detail::sample_hop(motion.frames)));
+  }
+  CHECK(sampled_frames(200).empty());
+}
+
 TEST_CASE("a T-pose or A-pose is found whatever the rest pose is") {
   for (const double raised : {90.0, 45.0}) {
     CAPTURE(raised);

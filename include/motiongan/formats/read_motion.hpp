@@ -104,6 +104,20 @@ inline void read_rotations(const std::filesystem::path& file, const ClipOptions&
   }
 }
 
+/// Takes out.motion, as it is in the file, to the form that read_motion gives; `posed` is the number of posed
+/// frames at its start if that is known.
+inline void finish(const std::filesystem::path& file, const ClipOptions& options, LoadedMotion& out,
+                   std::optional<std::size_t> posed) {
+  if (options.fps > 0) out.motion.rate = options.fps;
+  out.unit_metres /= options.scale;
+  out.dropped = posed ? drop_frames(out.motion, *posed) : drop_first_frames(out.motion, options.first_frame);
+  if (options.scale != 1) out.motion = scaled(std::move(out.motion), options.scale);
+  if (out.motion.frames == 0) return;
+  out.bones = measure_bones(out.motion);
+  if (extension_of(file) != ".npz") stand_upright(out, options);
+  note_bones(out.motion, out.bones, file.string(), out.notes);
+}
+
 /// The clip with its joints in depth-first order, as BVH and models hold them.
 inline PositionClip depth_first(PositionClip clip) {
   const std::size_t joints = clip.skeleton.size();
@@ -173,14 +187,46 @@ inline LoadedMotion read_motion(const std::filesystem::path& file, const ClipOpt
     return out;
   }
   detail::read_rotations(file, options, out);
-  if (options.fps > 0) out.motion.rate = options.fps;
-  out.unit_metres /= options.scale;
-  out.dropped = drop_first_frames(out.motion, options.first_frame);
-  if (options.scale != 1) out.motion = scaled(std::move(out.motion), options.scale);
-  if (out.motion.frames == 0) return out;
-  out.bones = measure_bones(out.motion);
-  if (extension_of(file) != ".npz") detail::stand_upright(out, options);
-  detail::note_bones(out.motion, out.bones, file.string(), out.notes);
+  detail::finish(file, options, out, std::nullopt);
+  return out;
+}
+
+/// What read_motion tells of a file, quickly: of a long BVH file, only a sample of frames is converted. The
+/// skeleton, its axes and sizes, dropped frames and notes are those of read_motion but for the sampling;
+/// `frames` counts all frames of the motion.
+struct InspectedMotion {
+  LoadedMotion loaded;
+  std::size_t frames = 0;
+};
+inline InspectedMotion inspect_motion(const std::filesystem::path& file, const ClipOptions& options = {}) {
+  const std::string extension = extension_of(file);
+  Clip clip;
+  std::vector<std::size_t> sample;
+  if (extension != ".npz" && extension != ".amc" && !read_motion_detail::holds_positions(file)) {
+    clip = read_bvh(file);
+    sample = sampled_frames(clip.frames);
+  }
+  InspectedMotion out;
+  if (clip.skeleton.size() == 0) {
+    out.loaded = read_motion(file, options);
+    out.frames = out.loaded.motion.frames;
+    return out;
+  }
+  const std::size_t width = clip.skeleton.channel_count(), all = clip.frames;
+  if (!sample.empty()) {
+    for (std::size_t k = 0; k < sample.size(); ++k)
+      std::copy_n(clip.channels.begin() + static_cast<std::ptrdiff_t>(sample[k] * width), width,
+                  clip.channels.begin() + static_cast<std::ptrdiff_t>(k * width));
+    clip.frames = sample.size();
+    clip.channels.resize(clip.frames * width);
+  }
+  out.loaded.unit_metres = options.unit_metres;
+  out.loaded.notes = std::move(clip.notes);
+  out.loaded.motion = to_motion(clip);
+  const bool automatic = options.first_frame == FirstFrame::automatic && !sample.empty();
+  const std::size_t posed = automatic ? t_pose_frames(out.loaded.motion, 2) : 0;
+  read_motion_detail::finish(file, options, out.loaded, automatic ? std::optional(posed) : std::nullopt);
+  out.frames = all - out.loaded.dropped;
   return out;
 }
 

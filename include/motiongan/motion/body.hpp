@@ -42,7 +42,7 @@ inline bool points_along(const Vec3& direction, std::size_t axis, double share) 
   return direction[axis] > share * length(direction);
 }
 
-/// Mean unit vector from the feet to the head over at most 64 frames; positions_of(frame) gives [joints].
+/// Mean unit vector from the feet to the head over about 16 frames; positions_of(frame) gives [joints].
 template <class Positions>
 Vec3 mean_stance(const Skeleton& skeleton, std::size_t frames, const Positions& positions_of) {
   const std::vector<std::size_t> feet = feet_detail::feet_by_name(skeleton);
@@ -50,7 +50,7 @@ Vec3 mean_stance(const Skeleton& skeleton, std::size_t frames, const Positions& 
   Vec3 sum{};
   std::size_t count = 0;
   if (feet.size() != 2 || head < 0) return sum;
-  for (std::size_t f = 0; f < frames; f += 1 + frames / 64)
+  for (std::size_t f = 0; f < frames; f += 1 + frames / 16)
     if (const auto body = feet_to_head(skeleton, feet, head, positions_of(f))) {
       sum = add(sum, scale(*body, 1 / length(*body)));
       ++count;

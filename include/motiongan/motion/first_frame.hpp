@@ -44,10 +44,18 @@ inline double step_between(const Motion& motion, std::size_t a, std::size_t b) {
   return sum / static_cast<double>(motion.skeleton.size());
 }
 
-/// The step that 99 % of the steps from frame `first` on do not exceed, from at most 400 of them.
-inline double usual_step(const Motion& motion, std::size_t first) {
+/// Steps are compared with about this many of the motion's own.
+constexpr std::size_t step_samples = 128;
+/// The first sampled step if not all are: after the frames that may be posed.
+constexpr std::size_t first_sample = most_posed + 1;
+
+/// Frames from one sampled step to the next in a motion of `frames` frames.
+constexpr std::size_t sample_hop(std::size_t frames) { return 1 + frames / step_samples; }
+
+/// The step that 99 % of the steps from frame `first` on do not exceed, of every hop-th one.
+inline double usual_step(const Motion& motion, std::size_t first, std::size_t hop) {
   std::vector<double> steps;
-  const std::size_t hop = 1 + motion.frames / 400;
+  if (hop > 1) first = first_sample;
   for (std::size_t f = first; f + 1 < motion.frames; f += hop)
     steps.push_back(step_between(motion, f, f + 1));
   if (steps.empty()) return 0;
@@ -126,8 +134,8 @@ inline bool is_t_or_a_pose(const Motion& motion) {
 /// rest pose (joints turned by less than 15 degrees on average), or a first frame in a T-pose or A-pose,
 /// followed by a jump far outside the clip's own steps. The jump is the mean over all joints; it must exceed
 /// one degree, and the clip's 99th percentile by a factor of 3, or of 1.5 after a pose within 5 degrees of
-/// rest. 0 if the clip starts with its motion.
-inline std::size_t t_pose_frames(const Motion& motion) {
+/// rest. 0 if the clip starts with its motion. Steps are taken at every hop-th frame.
+inline std::size_t t_pose_frames(const Motion& motion, std::size_t hop) {
   namespace detail = first_frame_detail;
   check_motion(motion);
   double rest[detail::most_posed]{};
@@ -142,7 +150,7 @@ inline std::size_t t_pose_frames(const Motion& motion) {
     if (count + 1 >= motion.frames) return false;  // no step to compare with
     const double jump = detail::step_between(motion, count - 1, count);
     const double factor = !t_pose && rest[count - 1] < 5 ? 1.5 : 3;
-    return jump > 1 && jump > factor * detail::usual_step(motion, count);
+    return jump > 1 && jump > factor * detail::usual_step(motion, count, hop);
   };
   const std::size_t last = t_pose ? 1 : posed;
   std::size_t count = 1;
@@ -153,16 +161,35 @@ inline std::size_t t_pose_frames(const Motion& motion) {
   return count;
 }
 
-/// Removes the first frames according to `rule`; returns how many.
-inline std::size_t drop_first_frames(Motion& motion, FirstFrame rule) {
-  std::size_t count = 0;
-  if (rule == FirstFrame::automatic) count = t_pose_frames(motion);
-  if (rule == FirstFrame::drop) count = std::min<std::size_t>(1, motion.frames);
+inline std::size_t t_pose_frames(const Motion& motion) {
+  return t_pose_frames(motion, first_frame_detail::sample_hop(motion.frames));
+}
+
+/// The frames of a clip that t_pose_frames reads, in order: the first ones, and pairs of consecutive frames.
+/// Of a motion of these alone, t_pose_frames(motion, 2) is that of the whole. Empty if it reads all of them.
+inline std::vector<std::size_t> sampled_frames(std::size_t frames) {
+  namespace detail = first_frame_detail;
+  const std::size_t hop = detail::sample_hop(frames);
+  std::vector<std::size_t> out;
+  if (hop < 3) return out;
+  for (std::size_t f = 0; f < detail::first_sample; ++f) out.push_back(f);
+  for (std::size_t f = detail::first_sample; f + 1 < frames; f += hop) out.insert(out.end(), {f, f + 1});
+  return out;
+}
+
+/// Removes the first `count` frames; returns how many.
+inline std::size_t drop_frames(Motion& motion, std::size_t count) {
   const auto values = static_cast<std::ptrdiff_t>(count * motion.skeleton.size());
   motion.rotations.erase(motion.rotations.begin(), motion.rotations.begin() + values);
   motion.positions.erase(motion.positions.begin(), motion.positions.begin() + values);
   motion.frames -= count;
   return count;
+}
+
+/// Removes the first frames according to `rule`; returns how many.
+inline std::size_t drop_first_frames(Motion& motion, FirstFrame rule) {
+  if (rule == FirstFrame::automatic) return drop_frames(motion, t_pose_frames(motion));
+  return rule == FirstFrame::drop ? drop_frames(motion, std::min<std::size_t>(1, motion.frames)) : 0;
 }
 
 }  // namespace motiongan::motion
