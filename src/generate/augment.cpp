@@ -78,6 +78,7 @@ void write_clips(const AugmentArgs& args, const ActionGan& model, const std::vec
   motion::write_text_atomically(out / "labels.tsv", labels);
   fmt::print("wrote {}: {} and labels.tsv; the first {} of each are the real clip's\n", out.string(),
              counted(clips.size(), "clip"), counted(model.format().frames, "frame"));
+  fmt::print("space: {}\n", describe(model.format().space));
 }
 
 int augment(AugmentArgs args, const CLI::App& verb) {

@@ -248,7 +248,8 @@ int search(const SearchArgs& args) {
     const std::vector<fs::path> files = sample_files(args.out, slug(args.text), 0, found.hypotheses.size());
     for (std::size_t h = 0; h < files.size(); ++h)
       motion::write_bvh(files[h], format.to_motion(found.hypotheses[h]));
-    fmt::print(args.json == "-" ? stderr : stdout, "wrote the hypotheses: {}\n", named(files));
+    fmt::print(args.json == "-" ? stderr : stdout, "wrote the hypotheses ({}): {}\n", describe(format.space),
+               named(files));
   }
   if (!args.html.empty()) show_results(found, args, format);
   return 0;
