@@ -69,7 +69,7 @@ class SharedClip {
       change_ = change;
       left_ = users_;
     }
-    const auto loaded = loaded_;
+    std::shared_ptr<const LoadedMotion> loaded = loaded_;
     if (--left_ == 0) loaded_.reset();
     return loaded;
   }

@@ -126,8 +126,8 @@ inline PositionClip depth_first(PositionClip clip) {
   while (!open.empty() && joints > 0) {
     order.push_back(open.back());
     open.pop_back();
-    for (auto child = below[order.back()].rbegin(); child != below[order.back()].rend(); ++child)
-      open.push_back(*child);
+    const std::vector<std::size_t>& next = below[order.back()];
+    open.insert(open.end(), next.rbegin(), next.rend());
   }
   if (std::is_sorted(order.begin(), order.end())) return clip;
   std::vector<int> place(joints);
