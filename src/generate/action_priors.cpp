@@ -33,16 +33,10 @@ SourceClip source_of(motion::Motion motion, const std::string& id, const motion:
 SourceClip read_source(const fs::path& file, const std::string& id, const motion::PositionFormat& format,
                        const ActionDataArgs& data) {
   const motion::ClipOptions& how = data.options.clips;
-  if (!motion::read_motion_detail::holds_positions(file))
-    return source_of(read_clip(file, how, format.space).motion, id, format);
+  if (!motion::holds_positions(file)) return source_of(read_clip(file, how, format.space).motion, id, format);
   motion::LoadedPositions loaded = motion::read_positions(file, how, format.rate);
-  print_notes(loaded.notes);
   motion::PositionClip clip = motion::resample(loaded.clip, format.rate);
-  const double factor = motion::scale_to(format.skeleton(), clip.skeleton);
-  if (factor != 1)
-    fmt::print(stderr, "motiongan: the clip {} is scaled by {} to the model's size, by leg length\n", id,
-               brief(factor));
-  clip = motion::scaled(std::move(clip), factor);
+  scale_to_model(clip, format.skeleton(), "the clip " + id);
   clip.id = id;
   return {std::move(clip), {}};
 }

@@ -63,15 +63,6 @@ void for_each_clip(
   print_notes(notes);
 }
 
-double scale_to_model(motion::Motion& motion, const motion::Skeleton& model, const std::string& what) {
-  const double factor = motion::scale_to(model, motion.skeleton);
-  if (factor == 1) return 1;
-  fmt::print(stderr, "motiongan: {} is scaled by {} to the model's size, by leg length\n", what,
-             brief(factor));
-  motion = motion::scaled(std::move(motion), factor);
-  return factor;
-}
-
 void scale_all_to(const motion::Skeleton& model, std::vector<motion::Motion>& motions,
                   const std::string& what) {
   std::size_t count = 0;

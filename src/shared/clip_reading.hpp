@@ -28,9 +28,17 @@ void for_each_clip(
     const fs::path& where, const motion::ClipOptions& options,
     const std::function<void(const fs::path& file, const std::string& id, motion::LoadedMotion&&)>& use);
 
-/// Scales a motion to a model's size by leg length if it differs by more than half, and says so; returns the
-/// factor. `what` names the motion: "the prior walk.bvh".
-double scale_to_model(motion::Motion& motion, const motion::Skeleton& model, const std::string& what);
+/// Scales a Motion or PositionClip to a model's size by leg length if it differs by more than half, and says
+/// so; returns the factor. `what` names the motion: "the prior walk.bvh".
+template <class Clip>
+double scale_to_model(Clip& clip, const motion::Skeleton& model, const std::string& what) {
+  const double factor = motion::scale_to(model, clip.skeleton);
+  if (factor == 1) return 1;
+  fmt::print(stderr, "motiongan: {} is scaled by {} to the model's size, by leg length\n", what,
+             brief(factor));
+  clip = motion::scaled(std::move(clip), factor);
+  return factor;
+}
 
 /// The same for a set of motions, each by its own factor; says how many were scaled.
 void scale_all_to(const motion::Skeleton& model, std::vector<motion::Motion>& motions,

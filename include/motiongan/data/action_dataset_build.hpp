@@ -286,10 +286,10 @@ inline ActionDataset ActionDataset::from_positions(const std::vector<PositionCli
           "folders is set, but clips in memory have no folders; expected labels by id or a pattern");
   std::vector<action_dataset_detail::Source> sources;
   for (const PositionClip& clip : clips)
-    sources.push_back({clip.id, clip.id, {}, [&clip, &options](int, const LoadChange& change) {
-                         return action_dataset_detail::load_positions({scaled(clip, change.scale), {}, 0, {}},
-                                                                      options.rate);
-                       }});
+    sources.push_back(
+        {clip.id, clip.id, {}, [&clip, &options](int, const LoadChange& change) {
+           return action_dataset_detail::load_positions({scaled(clip, change.scale), {}}, options.rate);
+         }});
   return action_dataset_detail::build(sources, labels.empty() ? nullptr : &labels, options);
 }
 

@@ -104,17 +104,13 @@ inline Loaded load_positions(LoadedPositions loaded, double rate) {
   out.clip = resample(clip, rate);
   out.height = body_height(clip.skeleton);
   out.up = loaded.up;
-  out.notes = std::move(loaded.notes);
   return out;
 }
 
 inline Loaded load_file(const std::filesystem::path& file, const std::string& id,
                         const ActionDatasetOptions& o, int root, const LoadChange& change) {
-  if (!read_motion_detail::holds_positions(file))
-    return load_motion(read_changed(file, o.clips, change), id, o.rate, root);
-  ClipOptions how = o.clips;
-  if (change.up) how.up = change.up;
-  how.scale *= change.scale;
+  const ClipOptions how = changed(o.clips, change);
+  if (!holds_positions(file)) return load_motion(read_motion(file, how), id, o.rate, root);
   Loaded out = load_positions(read_positions(file, how, o.rate), o.rate);
   out.clip.id = id;
   return out;

@@ -35,12 +35,11 @@ struct LoadChange {
   bool operator==(const LoadChange&) const = default;
 };
 
-/// Reads a motion for a data set.
-inline LoadedMotion read_changed(const std::filesystem::path& file, ClipOptions options,
-                                 const LoadChange& change) {
+/// The options with the change.
+inline ClipOptions changed(ClipOptions options, const LoadChange& change) {
   if (change.up) options.up = change.up;
   options.scale *= change.scale;
-  return read_motion(file, options);
+  return options;
 }
 
 /// A motion in memory for a data set; it is y up.

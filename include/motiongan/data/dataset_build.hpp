@@ -340,7 +340,7 @@ inline Dataset Dataset::from_bvh(const std::filesystem::path& folder_or_file, co
   for (std::size_t i = 0; i < files.size(); ++i)
     sources.push_back(
         {ids[i], files[i].string(), {}, [file = files[i], how = options.clips](const LoadChange& change) {
-           return read_changed(file, how, change);
+           return read_motion(file, changed(how, change));
          }});
   Dataset data = dataset_detail::build(with_captions(std::move(sources), match.of_clip), options);
   data.captions = std::move(match.report);

@@ -40,10 +40,14 @@ struct LoadedMotion {
 /// Joint positions as read from a file, y up.
 struct LoadedPositions {
   PositionClip clip;
-  std::optional<UpAxis> up;
-  std::size_t dropped = 0;
-  std::vector<std::string> notes;
+  std::optional<UpAxis> up;  ///< the file's up axis; unset: unknown, taken to be y
 };
+
+/// Whether a file holds joint positions rather than rotations, by its ending: .csv or .npy.
+inline bool holds_positions(const std::filesystem::path& file) {
+  const std::string extension = extension_of(file);
+  return extension == ".csv" || extension == ".npy";
+}
 
 namespace read_motion_detail {
 
@@ -143,11 +147,6 @@ inline PositionClip depth_first(PositionClip clip) {
   return out;
 }
 
-inline bool holds_positions(const std::filesystem::path& file) {
-  const std::string extension = extension_of(file);
-  return extension == ".csv" || extension == ".npy";
-}
-
 }  // namespace read_motion_detail
 
 /// Reads joint positions (.csv, .npy). `rate` is that of a file which does not say and for which options.fps
@@ -179,11 +178,10 @@ inline LoadedMotion read_motion(const std::filesystem::path& file, const ClipOpt
   namespace detail = read_motion_detail;
   LoadedMotion out;
   out.unit_metres = options.unit_metres;
-  if (detail::holds_positions(file)) {
+  if (holds_positions(file)) {
     LoadedPositions positions = read_positions(file, options, 0);
     out.motion = motion_from_positions(positions.clip);
     out.up = positions.up;
-    out.notes = std::move(positions.notes);
     return out;
   }
   detail::read_rotations(file, options, out);
@@ -202,7 +200,7 @@ inline InspectedMotion inspect_motion(const std::filesystem::path& file, const C
   const std::string extension = extension_of(file);
   Clip clip;
   std::vector<std::size_t> sample;
-  if (extension != ".npz" && extension != ".amc" && !read_motion_detail::holds_positions(file)) {
+  if (extension != ".npz" && extension != ".amc" && !holds_positions(file)) {
     clip = read_bvh(file);
     sample = sampled_frames(clip.frames);
   }

@@ -1,8 +1,11 @@
 // Finding and dropping the rest pose or T-pose that some conversions prepend to a clip.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "motiongan/core/fields.hpp"
@@ -76,56 +79,61 @@ inline double straightness(const Motion& motion, const std::vector<Vec3>& positi
   return bones > 0 ? length(subtract(positions[to], positions[from])) / bones : 0;
 }
 
+/// The ends of an arm and a leg on one side: upper arm to hand, thigh to ankle.
+struct Limbs {
+  std::size_t arm = 0, hand = 0, thigh = 0, ankle = 0;
+};
+
+/// The limbs of a side (0: left, 1: right) by joint names; a limb is two bones. Nothing if one is not found.
+inline std::optional<Limbs> find_limbs(const Skeleton& skeleton, std::size_t side,
+                                       const std::vector<std::size_t>& feet) {
+  const auto above = [&](int j, int count) {
+    for (; j >= 0 && count > 0; --count) j = skeleton.joints[static_cast<std::size_t>(j)].parent;
+    return j;
+  };
+  int hand = -1;
+  for (std::size_t j = 0; j < skeleton.size() && hand < 0; ++j) {
+    if (side_of(skeleton.joints[j].name) != (side == 0 ? Side::left : Side::right)) continue;
+    const std::string name = feet_detail::lower_case(skeleton.joints[j].name);
+    if (name.find("hand") != name.npos || name.find("wrist") != name.npos) hand = static_cast<int>(j);
+  }
+  const auto foot = static_cast<int>(feet[side]);
+  const bool toe = feet_detail::lower_case(skeleton.joints[feet[side]].name).find("toe") != std::string::npos;
+  const int ankle = toe ? above(foot, 1) : foot, arm = above(hand, 2), thigh = above(ankle, 2);
+  if (arm < 0 || thigh < 0) return std::nullopt;
+  return Limbs{static_cast<std::size_t>(arm), static_cast<std::size_t>(hand), static_cast<std::size_t>(thigh),
+               static_cast<std::size_t>(ankle)};
+}
+
 /// Whether frame 0 is a T-pose or an A-pose whatever the rest pose is: both arms, from the upper arm to the
 /// hand, are straight, mirrored, and raised by at least 20 degrees from hanging, and both legs are straight.
 inline bool is_t_or_a_pose(const Motion& motion) {
   const Skeleton& skeleton = motion.skeleton;
   const std::vector<std::size_t> feet = feet_detail::feet_by_name(skeleton);
   if (feet.size() != 2) return false;
-  std::vector<int> hands(2, -1), arms(2, -1), thighs(2, -1);
-  for (std::size_t j = 0; j < skeleton.size(); ++j) {
-    const Side side = side_of(skeleton.joints[j].name);
-    if (side == Side::centre) continue;
-    const std::string name = feet_detail::lower_case(skeleton.joints[j].name);
-    const std::size_t s = side == Side::left ? 0 : 1;
-    const bool hand = name.find("hand") != name.npos || name.find("wrist") != name.npos;
-    if (hand && hands[s] < 0) hands[s] = static_cast<int>(j);
-  }
-  if (hands[0] < 0 || hands[1] < 0) return false;
-  // A limb is two bones: the joint two above the hand (the upper arm), and two above the ankle (the thigh).
-  const auto above = [&](int j, int count) {
-    for (; j >= 0 && count > 0; --count) j = skeleton.joints[static_cast<std::size_t>(j)].parent;
-    return j;
-  };
-  const Motion first{
-      skeleton,
-      motion.rate,
-      1,
-      {motion.rotations.begin(), motion.rotations.begin() + static_cast<std::ptrdiff_t>(skeleton.size())},
-      {motion.positions.begin(), motion.positions.begin() + static_cast<std::ptrdiff_t>(skeleton.size())}};
-  const std::vector<Vec3> p = joint_positions(first);
-  Vec3 sides[2];
-  for (std::size_t s = 0; s < 2; ++s) {
-    arms[s] = above(hands[s], 2);
-    const bool toe = feet_detail::lower_case(skeleton.joints[feet[s]].name).find("toe") != std::string::npos;
-    const int ankle = toe ? above(static_cast<int>(feet[s]), 1) : static_cast<int>(feet[s]);
-    thighs[s] = above(ankle, 2);
-    if (arms[s] < 0 || thighs[s] < 0) return false;
-    const auto arm = static_cast<std::size_t>(arms[s]), hand = static_cast<std::size_t>(hands[s]);
-    if (straightness(motion, p, arm, hand) < 0.98 ||
-        straightness(motion, p, static_cast<std::size_t>(thighs[s]), static_cast<std::size_t>(ankle)) < 0.99)
+  const auto joints = static_cast<std::ptrdiff_t>(skeleton.size());
+  const std::vector<Vec3> p =
+      joint_positions({skeleton,
+                       motion.rate,
+                       1,
+                       {motion.rotations.begin(), motion.rotations.begin() + joints},
+                       {motion.positions.begin(), motion.positions.begin() + joints}});
+  std::array<Vec3, 2> arms{}, thighs{};
+  for (std::size_t side = 0; side < 2; ++side) {
+    const std::optional<Limbs> limbs = find_limbs(skeleton, side, feet);
+    if (!limbs || straightness(motion, p, limbs->arm, limbs->hand) < 0.98 ||
+        straightness(motion, p, limbs->thigh, limbs->ankle) < 0.99)
       return false;
-    const Vec3 leg = subtract(p[static_cast<std::size_t>(ankle)], p[static_cast<std::size_t>(thighs[s])]);
-    sides[s] = subtract(p[hand], p[arm]);
-    const double hanging = dot(sides[s], leg) / (length(sides[s]) * length(leg));
+    const Vec3 leg = subtract(p[limbs->ankle], p[limbs->thigh]);
+    arms[side] = subtract(p[limbs->hand], p[limbs->arm]);
+    thighs[side] = p[limbs->thigh];
+    const double hanging = dot(arms[side], leg) / (length(arms[side]) * length(leg));
     if (hanging > std::cos(radians(20))) return false;
   }
-  // Arms mirrored: their sum lies in the body's plane of symmetry, their difference across it.
-  const Vec3 across =
-      subtract(p[static_cast<std::size_t>(thighs[0])], p[static_cast<std::size_t>(thighs[1])]);
-  const Vec3 both = add(sides[0], sides[1]);
-  const double width = length(across), arm = length(sides[0]);
-  return width > 0 && std::abs(dot(both, across)) < 0.1 * width * arm;
+  // Arms mirrored: their sum lies in the body's plane of symmetry.
+  const Vec3 across = subtract(thighs[0], thighs[1]);
+  const double width = length(across);
+  return width > 0 && std::abs(dot(add(arms[0], arms[1]), across)) < 0.1 * width * length(arms[0]);
 }
 
 }  // namespace first_frame_detail
