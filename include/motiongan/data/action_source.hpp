@@ -97,7 +97,7 @@ inline Loaded load_motion(LoadedMotion loaded, const std::string& id, double rat
   return out;
 }
 
-inline Loaded load_positions(LoadedPositions loaded, double rate) {
+inline Loaded load_positions(const LoadedPositions& loaded, double rate) {
   const PositionClip& clip = loaded.clip;
   Loaded out;
   out.seconds = clip.frames == 0 ? 0 : static_cast<double>(clip.frames) / clip.rate;
