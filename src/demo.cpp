@@ -31,6 +31,7 @@ void renew(const fs::path& out) {
     std::getline(in, first);
     require(first.starts_with(marker), out.string(),
             " already exists and was not made by the demo; choose another --out");
+    if (fs::is_directory(out / "save")) const io::FolderLock no_demo_is_running(out / "save");
     for (const auto& entry : fs::directory_iterator(out))
       if (entry.path() != note) fs::remove_all(entry.path());
   }
@@ -67,7 +68,7 @@ RunResult train_for(double minutes, Dvgan& model, const motion::Dataset& data, D
   run.save_every_minutes = 0;
   run.max_minutes = minutes;
   run.notes = {{"options", note_of(fields_of(args))}};
-  run.should_stop = [] { return caught_signal() != 0; };
+  run.interrupted = [] { return stop_requested(); };
   const auto start = std::chrono::steady_clock::now();
   run.report = [&](std::size_t iteration, std::span<const NamedLoss> losses) {
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;

@@ -8,6 +8,7 @@
 #include <new>
 
 #include "shared/command.hpp"
+#include "shared/signals.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -68,15 +69,24 @@ int run(int argc, char** argv) {
 }  // namespace motiongan::command
 
 int main(int argc, char** argv) {
+  using namespace motiongan::command;
+  open_standard_streams();
   // Line-buffered, so that stdout and the progress on stderr keep their order when both go to one file.
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
-  if (argc > 0 && *argv[0] != '\0') motiongan::command::program() = argv[0];
+  if (argc > 0 && *argv[0] != '\0') program() = argv[0];
+  int status = exit_failure;
   try {
-    return motiongan::command::run(argc, argv);
+    status = run(argc, argv);
+    flush_output();
+    return status;
   } catch (const std::bad_alloc&) {
     std::fputs("motiongan: out of memory\n", stderr);
+  } catch (const motiongan::DivergedError& error) {
+    std::fprintf(stderr, "motiongan: %s\n", error.what());
+    return exit_diverged;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "motiongan: %s\n", error.what());
   }
-  return 1;
+  // Also where a pipe broke and the error is that nothing more can be printed.
+  return caught_signal() != 0 ? 128 + caught_signal() : exit_failure;
 }

@@ -38,8 +38,9 @@ RunStart begin_run(const RunArgs& args, const fs::path& save, bool has_data, con
   require(has_data || args.resume,
           "there is nothing to train on: give a folder of BVH clips, or --procedural");
   require(has_data || !args.save.empty(), "--resume needs --save DIR, the folder of the run");
-  RunStart start{args.save.empty() ? save : fs::path(args.save), 0};
+  RunStart start{args.save.empty() ? save : fs::path(args.save), 0, nullptr};
   const RunFiles files{start.folder};
+  if (fs::is_directory(start.folder)) start.lock = std::make_shared<const io::FolderLock>(start.folder);
   if (!args.resume) {
     require(!fs::exists(files.checkpoint()), start.folder.string(),
             " already holds a run; continue it with --resume, or choose another --save");
@@ -79,7 +80,9 @@ RunResult run_shown(Trainer& trainer, const std::function<void(const fs::path&)>
   run.save_dir = start.folder;
   run.resume = args.resume;
   run.notes = {{"options", note}};
-  run.should_stop = [] { return caught_signal() != 0; };
+  run.lock = start.lock;
+  run.interrupted = [] { return stop_requested(); };
+  run.warn = [&](const std::string& text) { bar.note("warning: " + text); };
   run.report = [&](std::size_t iteration, std::span<const NamedLoss> losses) {
     std::vector<NamedValue> values;
     for (const auto& [name, short_name] : shown_losses)

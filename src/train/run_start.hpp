@@ -27,7 +27,8 @@ void require_one_source(const CLI::App& verb);
 
 struct RunStart {
   fs::path folder;
-  std::size_t done = 0;  ///< iterations
+  std::size_t done = 0;                        ///< iterations
+  std::shared_ptr<const io::FolderLock> lock;  ///< of the folder, if it is there already
 };
 
 /// Finds the folder of the run (--save, or else `save`) and, if it is resumed, calls `take(note, checkpoint)`

@@ -75,7 +75,7 @@ TEST_CASE("the recurrent networks: any number of frames, stopped and resumed") {
 TEST_CASE("Ctrl-C saves and says how to go on; a killed run resumes from its last checkpoint") {
   const TestFolder folder;
   const std::string train = "train dvgan --procedural 6 --log-every 1" + tiny;
-  const std::string start = std::string("'") + MOTIONGAN_COMMAND + "' " + train;
+  const std::string start = in_background + train;
   // Runs until some rows of the log are there, then gets the signal.
   const auto interrupt = [&](const std::string& save, const std::string& more, const std::string& signal) {
     return shell(start + " --save " + save + more + " & pid=$!; for i in $(seq 600); do " + "[ $(cat " +

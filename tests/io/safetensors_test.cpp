@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "../support/folders.hpp"
 using motiongan::Error;
 using motiongan::io::SafeTensor;
 using motiongan::io::SafeTensors;
@@ -81,7 +82,7 @@ TEST_CASE("safetensors: what was written is read again, number for number") {
   std::uint64_t length = 0;
   std::memcpy(&length, bytes.data(), sizeof(length));
   CHECK(length % 8 == 0);
-  CHECK_FALSE(fs::exists(folder.path / "b.tmp"));
+  CHECK_FALSE(motiongan::testing::has_unfinished(folder.path));
 
   SafeTensors().write(folder.path / "empty");
   CHECK(SafeTensors::read(folder.path / "empty").tensors.empty());
@@ -258,13 +259,13 @@ TEST_CASE("safetensors: a write that fails leaves the old file as it was") {
   bad.tensors["__metadata__"] = good.tensors["a"];
   CHECK_THROWS_AS(bad.write(folder.path / "model"), Error);
   CHECK(get(folder.path / "model") == before);
-  CHECK_FALSE(fs::exists(folder.path / "model.tmp"));
+  CHECK_FALSE(motiongan::testing::has_unfinished(folder.path));
 
   CHECK_THROWS_AS(good.write(folder.path / "no such folder" / "model"), Error);
   fs::create_directory(folder.path / "taken");
   put(folder.path / "taken" / "x", "x");
   CHECK_THROWS_AS(good.write(folder.path / "taken"), Error);
-  CHECK_FALSE(fs::exists(folder.path / "taken.tmp"));
+  CHECK_FALSE(motiongan::testing::has_unfinished(folder.path));
 }
 
 TEST_CASE("safetensors: every whole type is read with its sign") {

@@ -6,9 +6,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "motiongan/core/buffer_pool.hpp"
@@ -98,6 +100,11 @@ struct ContextState {
   };
   bool profiling = false;
   std::unordered_map<std::string, KernelTime> kernel_times;
+
+  /// See Interruptible; null without one.
+  const std::function<bool()>* interrupted = nullptr;
+  std::size_t unmarked_launches = 0;
+  ClEvent marker;
 
   ~ContextState() {
     if (queue) clFinish(queue.get());
@@ -194,6 +201,17 @@ class Context {
   /// Waits until all enqueued work has finished.
   void finish() const { check_cl(clFinish(queue()), "clFinish"); }
 
+  /// An event that is complete once all work enqueued so far has finished.
+  ClEvent marker() const {
+    cl_event event = nullptr;
+    check_cl(clEnqueueMarkerWithWaitList(queue(), 0, nullptr, &event), "clEnqueueMarkerWithWaitList");
+    return ClEvent(event);
+  }
+  void wait_for(const ClEvent& done) const {
+    const cl_event event = done.get();
+    check_cl(clWaitForEvents(1, &event), "clWaitForEvents");
+  }
+
   /// Enqueues kernel `name` of cl/<file>.cl. A Tensor becomes two arguments (buffer, first element), a
   /// std::size_t a cl_uint, a KernelReal a scalar of the context's precision. An empty grid launches nothing.
   /// Throws Error if the kernel does not build or an OpenCL call fails.
@@ -201,6 +219,7 @@ class Context {
   void launch(const char* file, const char* name, const LaunchGrid& grid,
               const Arguments&... arguments) const {
     if (grid.global[0] == 0 || grid.global[1] == 0 || grid.global[2] == 0) return;
+    if (state_->interrupted) stop_if_interrupted();
     detail::KernelArguments to{state_->programs->kernel(file, name), state_->precision, name};
     (add_argument(to, arguments), ...);
     cl_event event = nullptr;
@@ -252,6 +271,18 @@ class Context {
       return concat(" ", argument);
   }
 
+  friend class Interruptible;
+
+  /// Keeps the host at most two times `most` launches ahead of the device. Throws Interrupted.
+  void stop_if_interrupted() const {
+    constexpr std::size_t most = 8;
+    if ((*state_->interrupted)()) throw Interrupted("interrupted");
+    if (++state_->unmarked_launches < most) return;
+    state_->unmarked_launches = 0;
+    if (state_->marker) wait_for(state_->marker);
+    state_->marker = marker();
+  }
+
   void record_time(const char* name, const ClEvent& done) const {
     const cl_event event = done.get();
     check_cl(clWaitForEvents(1, &event), "clWaitForEvents", ": kernel ", name);
@@ -264,6 +295,25 @@ class Context {
   }
 
   std::shared_ptr<detail::ContextState> state_;
+};
+
+/// While an object of this class exists, each launch in `context` calls `interrupted` and throws Interrupted
+/// if it returns true. The host then stays close to the device, so that little work is left in the queue.
+class Interruptible {
+ public:
+  /// `interrupted` must outlive the object.
+  Interruptible(const Context& context, const std::function<bool()>& interrupted)
+      : context_(context), before_(std::exchange(context.state_->interrupted, &interrupted)) {}
+  ~Interruptible() {
+    context_.state_->interrupted = before_;
+    context_.state_->marker = {};
+  }
+  Interruptible(const Interruptible&) = delete;
+  Interruptible& operator=(const Interruptible&) = delete;
+
+ private:
+  Context context_;
+  const std::function<bool()>* before_;
 };
 
 }  // namespace motiongan

@@ -111,6 +111,12 @@ class DivergedError : public Error {
   using Error::Error;
 };
 
+/// Work was given up because somebody asked for it; see Interruptible.
+class Interrupted : public Error {
+ public:
+  using Error::Error;
+};
+
 namespace detail {
 [[noreturn]] inline void throw_error(std::initializer_list<MessagePart> parts) {
   throw Error(message_of(parts));

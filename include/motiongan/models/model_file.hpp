@@ -49,6 +49,15 @@ void describe_model(const Model& model, io::SafeTensors& file) {
   file.metadata["format"] = Model::write_format(model.format());
 }
 
+/// The metadata of a model file, from those of a checkpoint.
+inline std::map<std::string, std::string> model_metadata(const io::SafeTensors& checkpoint) {
+  std::map<std::string, std::string> out;
+  for (const char* key : {"motiongan_model", "options", "format"})
+    if (const auto found = checkpoint.metadata.find(key); found != checkpoint.metadata.end())
+      out.insert(*found);
+  return out;
+}
+
 /// Writes the weights (PyTorch's names and shapes) and the metadata as one safetensors file.
 template <class Model>
 void save_model(Model& model, const std::filesystem::path& path) {

@@ -21,6 +21,8 @@ class Optimizer {
   virtual std::vector<std::pair<std::string, Tensor>> state() const = 0;
 
   const std::vector<Var>& parameters() const { return parameters_; }
+  /// All parameters concatenated, [n]: the memory that they are views of.
+  const Tensor& values() const { return values_; }
   std::size_t steps() const { return steps_; }
   void set_steps(std::size_t steps) { steps_ = steps; }
 
@@ -61,8 +63,7 @@ class Optimizer {
   /// Updates values() from gradients(); steps() already counts this step.
   virtual void update() = 0;
 
-  const Tensor& values() const { return values_; }        // all parameters concatenated, [n]
-  const Tensor& gradients() const { return gradients_; }  // in the same order, [n]
+  const Tensor& gradients() const { return gradients_; }  // in the order of values(), [n]
   const Context& context() const { return values_.context(); }
 
  private:

@@ -54,8 +54,6 @@ class Trainer {
   /// The names of the losses, in the same order.
   virtual std::vector<std::string> loss_names() const = 0;
 
-  /// Writes the model file.
-  virtual void save_model(const std::filesystem::path& path) = 0;
   /// Adds the model's metadata and the training options ("training") to a checkpoint.
   virtual void describe(io::SafeTensors& file) const = 0;
   /// Throws Error, naming what differs, unless the checkpoint belongs to the same model, data and options.
@@ -119,7 +117,6 @@ class ModelTrainer : public Trainer {
     return names;
   }
 
-  void save_model(const std::filesystem::path& path) override { model_.save(path); }
   void describe(io::SafeTensors& file) const override {
     describe_model(model_, file);
     TrainOptions options = options_;
