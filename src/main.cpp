@@ -75,6 +75,9 @@ int main(int argc, char** argv) {
     return motiongan::command::run(argc, argv);
   } catch (const std::bad_alloc&) {
     std::fputs("motiongan: out of memory\n", stderr);
+  } catch (const std::filesystem::filesystem_error& error) {  // such as a link that leads to itself
+    std::fprintf(stderr, "motiongan: %s cannot be reached: %s\n", error.path1().c_str(),
+                 error.code().message().c_str());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "motiongan: %s\n", error.what());
   }

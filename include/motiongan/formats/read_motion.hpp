@@ -240,6 +240,8 @@ inline std::vector<std::filesystem::path> find_motion_files(
     const std::string name = file.filename().string();
     if (name == "shape.npz" || name.ends_with("_shape.npz")) return true;  // AMASS's body shapes
     if (extension_of(file) != ".csv") return false;
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored)) return true;  // opening a pipe would wait
     std::ifstream in(file, std::ios::binary);
     std::string head(65536, '\0');
     in.read(head.data(), static_cast<std::streamsize>(head.size()));
