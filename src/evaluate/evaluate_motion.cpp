@@ -31,7 +31,7 @@ NamedMotions load(const fs::path& where, double rate, const motion::ClipOptions&
   for_each_clip(where, options,
                 [&](const fs::path& file, const std::string& id, motion::LoadedMotion&& loaded) {
                   motion::Motion motion = std::move(loaded.motion);
-                  if (rate > 0) motion = motion::resample(motion, rate);
+                  if (rate > 0) motion = motion::resample(motion, rate, file.string());
                   if (!out.empty())
                     motion::require_same_joints(out.begin()->second.skeleton, motion.skeleton, file.string());
                   motion.frames < 4 ? void(++short_ones) : void(out.emplace(id, std::move(motion)));

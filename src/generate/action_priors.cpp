@@ -26,7 +26,7 @@ SourceClip source_of(motion::Motion motion, const std::string& id, const motion:
   const int root = motion.skeleton.find(format.skeleton().joints.front().name);
   scale_to_model(motion, format.skeleton(), "the clip " + id);
   SourceClip out{clip_for(motion, format, id), {}};
-  out.motion = fold_into_root(motion::resample(motion, format.rate), root);
+  out.motion = fold_into_root(motion::resample(motion, format.rate, id), root);
   return out;
 }
 

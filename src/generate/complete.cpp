@@ -51,7 +51,8 @@ Prior read_prior(const CompleteArgs& args, const motion::MotionFormat& format) {
   require(from < in_file, "--from ", args.from, " is frame ", from, " of ", args.prior, ", which has ",
           in_file, " frames at ", brief(whole.rate), " per second (",
           duration(static_cast<double>(in_file) / whole.rate), ")");
-  const motion::Motion rest = motion::resample(slice(whole, from - posed, in_file - from), format.rate);
+  const motion::Motion rest =
+      motion::resample(slice(whole, from - posed, in_file - from), format.rate, args.prior);
   require(rest.frames >= args.seed_frames, "the prior ", args.prior, " has ",
           counted(in_file - from, "frame"), " from frame ", from, " on, ",
           duration(static_cast<double>(in_file - from) / whole.rate), " at ", brief(whole.rate),

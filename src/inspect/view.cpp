@@ -23,7 +23,7 @@ int view_clips(ViewArgs args) {
     for_each_clip(
         given, args.clips, [&](const fs::path& file, const std::string&, motion::LoadedMotion&& loaded) {
           motion::Motion motion = std::move(loaded.motion);
-          if (args.rate > 0) motion = motion::resample(motion, args.rate);
+          if (args.rate > 0) motion = motion::resample(motion, args.rate, file.string());
           fmt::print("{}: {} at {} per second, {}\n", file.string(), counted(motion.frames, "frame"),
                      brief(motion.rate), duration(static_cast<double>(motion.frames) / motion.rate));
           motions.push_back({file.stem().string(), std::move(motion)});
