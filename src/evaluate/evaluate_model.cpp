@@ -22,8 +22,8 @@ std::optional<std::size_t> trained_on(const fs::path& folder, const motion::Data
   const fs::path split = RunFiles{folder}.split();
   if (!fs::is_regular_file(split)) return std::nullopt;
   std::set<std::string> trained;
-  motion::for_each_tab_line(motion::read_text(split, "list of clips"), split.string(),
-                            "train or test <TAB> clip id", [&](const motion::TabLine& line) {
+  motion::for_each_tab_line(motion::read_text(split, "list of clips", motion::largest_list_file),
+                            split.string(), "train or test <TAB> clip id", [&](const motion::TabLine& line) {
                               if (line.before == "train") trained.emplace(line.after);
                             });
   std::size_t count = 0;

@@ -213,4 +213,8 @@ TEST_CASE("pipes and links that lead to themselves are no captions, and are name
   CHECK_THROWS_WITH_AS(read_caption_file(folder.path / "pipe.txt"), doctest::Contains("is a named pipe"),
                        Error);
   CHECK_NOTHROW(beside("other"));
+  folder.write("huge.json", "");
+  fs::resize_file(folder.path / "huge.json", largest_list_file + 1);  // sparse
+  CHECK_THROWS_WITH_AS(read_caption_file(folder.path / "huge.json"),
+                       doctest::Contains("huge.json has 268435457 bytes, expected at most 268435456"), Error);
 }

@@ -51,7 +51,7 @@ inline Caption caption_of_line(std::string_view line, std::string_view place) {
 
 /// Adds the captions of one clip's text file.
 inline void add_clip_text(CaptionFile& out, const std::string& id, const std::filesystem::path& file) {
-  const std::string name = file.string(), text = read_text(file, "text file");
+  const std::string name = file.string(), text = read_text(file, "text file", largest_list_file);
   for_each_line(text, name, [&](const TextLine& line) {
     require_utf8(line.raw, name, line.number);
     Caption caption = caption_of_line(line.text, place(name, line.number));

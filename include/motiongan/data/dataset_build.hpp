@@ -326,8 +326,11 @@ inline Dataset build(const std::vector<ClipSource>& sources, const DatasetOption
   format.vocabulary = Vocabulary::from_captions(training_captions);
   for (auto* part : {&data.train, &data.test})
     for (DatasetClip& clip : *part)
-      for (const std::string& caption : clip.captions)
+      for (const std::string& caption : clip.captions) {
         clip.sentences.push_back(format.vocabulary.encode(caption));
+        if (const std::string note = word_limit_note(caption); !note.empty())
+          data.notes.push_back(concat("clip '", clip.id, "': its caption ", note));
+      }
   return data;
 }
 
