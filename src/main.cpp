@@ -8,6 +8,7 @@
 #include <new>
 
 #include "shared/command.hpp"
+#include "shared/shell.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -70,7 +71,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   // Line-buffered, so that stdout and the progress on stderr keep their order when both go to one file.
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
-  if (argc > 0 && *argv[0] != '\0') motiongan::command::program() = argv[0];
+  if (argc > 0 && *argv[0] != '\0') motiongan::command::program() = motiongan::command::shell_word(argv[0]);
   try {
     return motiongan::command::run(argc, argv);
   } catch (const std::bad_alloc&) {

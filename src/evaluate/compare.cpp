@@ -3,6 +3,7 @@
 #include "motiongan/metrics/statistics.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "shared/clip_reading.hpp"
+#include "shared/outputs.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -33,6 +34,7 @@ std::vector<motion::Motion> load(const std::vector<std::string>& where, double r
 }
 
 int compare_sets(const CompareArgs& args) {
+  check_output("--csv", args.csv, table_output, inputs_of(args.generated, args.real));
   const std::vector<motion::Motion> generated = load(args.generated, args.rate, args.clips);
   require(!generated.empty(), "no generated clip has at least two frames; nothing to compare");
   // Speeds depend on the rate, so both sets are resampled to that of the generated one.

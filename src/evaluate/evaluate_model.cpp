@@ -5,6 +5,7 @@
 #include "evaluate/evaluate_model.hpp"
 #include "motiongan/formats/tab_lines.hpp"
 #include "motiongan/formats/text_file.hpp"
+#include "shared/outputs.hpp"
 #include "shared/prompt.hpp"
 #include "train/ranking.hpp"
 #include "train/run_start.hpp"
@@ -60,6 +61,7 @@ void warn_of_data(const motion::Dataset& data, const Dvgan& model, const fs::pat
 
 int run_evaluation(EvaluateModelArgs args, const CLI::App& verb) {
   const fs::path file = model_file(args.model), ranked_by = ranker_file(args.ranker);
+  check_output("--json", args.json, json_output, {file, ranked_by, args.folder, args.data.captions});
   const fs::path checkpoint = RunFiles{file.parent_path()}.checkpoint();
   const Context context;
   const Dvgan model = Dvgan::load(context, file);

@@ -9,6 +9,7 @@
 #include "motiongan/motion/root_joint.hpp"
 #include "motiongan/motion/skeleton_match.hpp"
 #include "shared/clip_reading.hpp"
+#include "shared/outputs.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -80,6 +81,7 @@ Pairs compare_pairs(const NamedMotions& generated, const NamedMotions& real) {
 }
 
 int evaluate_motion(const EvaluateMotionArgs& args) {
+  check_output("--json", args.json, json_output, {args.generated, args.real});
   const NamedMotions generated = load(args.generated, args.rate, args.clips);
   // Speeds and jerk depend on the rate, so both sets are resampled to that of the generated one.
   const double rate = args.rate > 0 ? args.rate : generated.begin()->second.rate;

@@ -58,7 +58,7 @@ inline std::string slug(const std::string& text) {
 
 inline void warn_of_unknown_words(const motion::Vocabulary& vocabulary, const std::string& text) {
   if (const std::string note = motion::word_limit_note(text); !note.empty())
-    fmt::print(stderr, "motiongan: \"{}...\" {}\n", note);
+    fmt::print(stderr, "motiongan: a text {}\n", note);
   const std::vector<std::string> words = vocabulary.unknown_words(text);
   if (words.empty()) return;
   std::string list;
