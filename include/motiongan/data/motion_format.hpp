@@ -22,7 +22,7 @@ namespace motiongan::motion {
 /// Conversion between network values and motion, and between captions and word indices.
 struct MotionFormat {
   /// Sizes beyond any model's, which a damaged file may claim.
-  static constexpr std::size_t most_frames = 1'000'000, most_dof = 65536, most_words = 1'000'000;
+  static constexpr std::size_t most_frames = 65536, most_dof = 65536, most_words = 1'000'000;
 
   PoseLayout layout;  ///< holds the skeleton
   Normalizer normalizer;

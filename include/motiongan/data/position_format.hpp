@@ -48,7 +48,7 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
 /// Conversion between network values and joint positions, and between class names and class indices.
 struct PositionFormat {
   /// Sizes beyond any model's, which a damaged file may claim.
-  static constexpr std::size_t most_frames = 1'000'000, most_dof = 65536, most_classes = 65536;
+  static constexpr std::size_t most_frames = 65536, most_dof = 65536, most_classes = 65536;
 
   PositionLayout layout;  ///< holds the skeleton
   Normalizer normalizer;
