@@ -58,6 +58,8 @@ void follow_split(motion::ActionDataset& data, const fs::path& split, bool other
   require(!data.train.empty(), "the model was trained on none of these clips (", split.string(), ")");
 }
 
+constexpr const char* labels_head = "# clip id\tlabel; synthetic clips\n";
+
 /// The name of the synthetic clip for the clip `id`, without extension.
 std::string synthetic_name(std::string id) {
   std::replace(id.begin(), id.end(), '/', '-');
@@ -72,6 +74,7 @@ void check_augment_outputs(const AugmentArgs& args, const motion::ActionDataset&
   if (args.out.empty()) return;
   const fs::path out = args.out;
   check_output_folder("--out", out, inputs);
+  check_own_list(out / "labels.tsv", labels_head);
   std::vector<fs::path> files{out / "labels.tsv"};
   if (args.format != "bvh") files.push_back(out / motion::bone_list_name);
   for (const motion::ActionClip& clip : data.train)
@@ -84,7 +87,7 @@ void write_clips(const AugmentArgs& args, const ActionGan& model, const std::vec
   const fs::path out = args.out;
   make_folder(out);
   std::vector<std::string> names;
-  std::string labels = "# clip id\tlabel; synthetic clips\n";
+  std::string labels = labels_head;
   for (const SyntheticClip& s : clips) {
     names.push_back(synthetic_name(s.clip.id));
     labels += names.back() + "\t" + model.format().classes[s.label] + "\n";

@@ -94,6 +94,15 @@ inline void check_output_folder(std::string_view option, const std::filesystem::
             " ", folder.string(), " is an input; choose another folder");
 }
 
+/// Throws Error if the list `file`, which the command writes beside clips, exists and does not begin with
+/// `first_line`: then somebody else wrote it.
+inline void check_own_list(const std::filesystem::path& file, std::string_view first_line) {
+  std::error_code problem;
+  if (!std::filesystem::exists(file, problem)) return;
+  require(motion::read_text(file, "list", motion::largest_list_file).starts_with(first_line), file.string(),
+          " exists, was not written by this command and would be replaced; choose another folder");
+}
+
 /// One list of several.
 inline std::vector<std::filesystem::path> inputs_of(const std::vector<std::string>& first,
                                                     const std::vector<std::string>& second = {}) {

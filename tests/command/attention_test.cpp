@@ -149,6 +149,9 @@ TEST_CASE("training on classes: every loss is told, and a resumed run ends bit-e
     CHECK(again.has("from twice/labels.tsv"));
     refused("augment again --out twice", "--out twice is an input; choose another folder");
     CHECK(lines_of("twice/labels.tsv") == 7);
+    fs::create_directory("mine");
+    write_file("mine/labels.tsv", "walk_000\twalk\n");
+    refused("augment whole --out mine", "mine/labels.tsv exists, was not written by this command");
     refused("augment whole", "give --out DIR");
     refused("augment nowhere --out x", "nowhere");
   }

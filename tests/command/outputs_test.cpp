@@ -100,6 +100,17 @@ TEST_CASE("the command keeps clips that an option names by mistake") {
   CHECK(bytes_of("clips/run_001.bvh") == run);
 }
 
+TEST_CASE("lists of captions that somebody else wrote are kept") {
+  const TestFolder folder;
+  REQUIRE(call("synth clips --clips 2").status == 0);
+  REQUIRE(call("synth clips --clips 3").status == 0);  // its own
+  write_file("clips/captions.tsv", "walk_000\tmine\n");
+  const Said said = call("synth clips --clips 2");
+  CHECK(said.status == 1);
+  CHECK(said.has("clips/captions.tsv exists, was not written by this command and would be replaced"));
+  CHECK(bytes_of("clips/captions.tsv") == "walk_000\tmine\n");
+}
+
 TEST_CASE("a full disk is an error that leaves nothing behind") {
   const TestFolder folder;
   REQUIRE(call("synth clips --clips 2").status == 0);

@@ -81,9 +81,7 @@ TEST_CASE("a folder without clips, and paths that lead nowhere") {
 
 TEST_CASE("only regular files are read: pipes, devices, folders and loops are told apart") {
   const Folder folder;
-  const auto error = [&](const fs::path& path) {
-    return message_of([&] { read_text(path, "BVH file"); });
-  };
+  const auto error = [&](const fs::path& path) { return message_of([&] { read_text(path, "BVH file"); }); };
   REQUIRE(mkfifo((folder.path / "pipe.bvh").c_str(), 0600) == 0);
   fs::create_symlink("pipe.bvh", folder.path / "link.bvh");
   fs::create_symlink("loop.bvh", folder.path / "loop.bvh");
