@@ -8,6 +8,7 @@
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/procedural/procedural.hpp"
 #include "motiongan/train/progress.hpp"
+#include "shared/shell.hpp"
 #include "shared/show.hpp"
 #include "shared/signals.hpp"
 #include "train/training.hpp"
@@ -188,11 +189,11 @@ int run_demo(const DemoArgs& demo) {
   fmt::print("wrote {}: the training curves\n", (out / "training.png").string());
   judge(log, compare_with_real(model, data));
 
-  const std::string save = (out / "save").string();
+  const std::string save = shell_word((out / "save").string());
   fmt::print("\nopen {} in a browser\n", fs::absolute(out / "motions.html").lexically_normal().string());
   fmt::print("\nmore from this model\n");
-  fmt::print("  {} generate {} --text \"{}\" --count 4 --rate 30 --html more.html\n", program(), save,
-             clips_to_show(data).front()->captions.front());
+  fmt::print("  {} generate {} --text {} --count 4 --rate 30 --html more.html\n", program(), save,
+             shell_quoted(clips_to_show(data).front()->captions.front()));
   fmt::print("  {} train dvgan --resume --save {}\n", program(), save);
   fmt::print("the same with your own clips (captions.tsv: a line `clip id <TAB> description` for each)\n");
   fmt::print("  {} train dvgan my-clips --captions captions.tsv --save save/mine\n", program());

@@ -8,6 +8,7 @@
 #include <new>
 
 #include "shared/command.hpp"
+#include "shared/shell.hpp"
 #include "shared/signals.hpp"
 
 namespace motiongan::command {
@@ -73,10 +74,9 @@ int main(int argc, char** argv) {
   open_standard_streams();
   // Line-buffered, so that stdout and the progress on stderr keep their order when both go to one file.
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
-  if (argc > 0 && *argv[0] != '\0') program() = argv[0];
-  int status = exit_failure;
+  if (argc > 0 && *argv[0] != '\0') program() = shell_word(argv[0]);
   try {
-    status = run(argc, argv);
+    const int status = run(argc, argv);
     flush_output();
     return status;
   } catch (const std::bad_alloc&) {
@@ -84,6 +84,9 @@ int main(int argc, char** argv) {
   } catch (const motiongan::DivergedError& error) {
     std::fprintf(stderr, "motiongan: %s\n", error.what());
     return exit_diverged;
+  } catch (const std::filesystem::filesystem_error& error) {  // such as a link that leads to itself
+    std::fprintf(stderr, "motiongan: %s cannot be reached: %s\n", error.path1().c_str(),
+                 error.code().message().c_str());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "motiongan: %s\n", error.what());
   }

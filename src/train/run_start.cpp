@@ -1,6 +1,7 @@
 #include "train/run_start.hpp"
 
 #include "motiongan/train/progress.hpp"
+#include "shared/shell.hpp"
 #include "shared/signals.hpp"
 
 namespace motiongan::command {
@@ -95,7 +96,7 @@ RunResult run_shown(Trainer& trainer, const std::function<void(const fs::path&)>
   fmt::print("{} after {} of {} iterations; saved in {}\n", result.stopped ? "stopped" : "finished",
              result.iterations, trainer.iterations(), start.folder.string());
   if (result.stopped)
-    fmt::print("continue: {} {} --resume --save {}\n", program(), verb, start.folder.string());
+    fmt::print("continue: {} {} --resume --save {}\n", program(), verb, shell_word(start.folder.string()));
   return result;
 }
 

@@ -2,6 +2,7 @@
 #include "motiongan/train/attention_trainer.hpp"
 #include "motiongan/train/baseline_trainer.hpp"
 #include "shared/action_data.hpp"
+#include "shared/shell.hpp"
 #include "train/run_start.hpp"
 
 namespace motiongan::command {
@@ -105,8 +106,8 @@ int train_attention(AttentionArgs args, const CLI::App& verb) {
   print_fact("device", describe(context.device()));
   print_saved_to(start.folder, args.run.run.save_every_minutes);
   train_either(model, data, args, start);
-  fmt::print("generate: {} generate {} --class '{}' --seconds 10\n", program(), start.folder.string(),
-             data.format.classes.front());
+  fmt::print("generate: {} generate {} --class {} --seconds 10\n", program(),
+             shell_word(start.folder.string()), shell_quoted(data.format.classes.front()));
   return exit_status();
 }
 

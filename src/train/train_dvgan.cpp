@@ -1,4 +1,5 @@
 // motiongan train dvgan: trains a text-to-motion model on captioned clips.
+#include "shared/shell.hpp"
 #include "train/training.hpp"
 
 namespace motiongan::command {
@@ -34,8 +35,8 @@ int train_dvgan(TrainDvganArgs args, const CLI::App& verb) {
   run_shown(
       trainer, [&](const fs::path& path) { data.write_split(path); }, args.run, start,
       note_of(fields_of(kept)), {{"wasserstein", "wasserstein"}, {"penalty", "penalty"}}, "train dvgan");
-  fmt::print("generate: {} generate {} --text \"{}\"\n", program(), start.folder.string(),
-             data.train.front().captions.front());
+  fmt::print("generate: {} generate {} --text {}\n", program(), shell_word(start.folder.string()),
+             shell_quoted(data.train.front().captions.front()));
   return exit_status();
 }
 

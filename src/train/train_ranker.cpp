@@ -1,4 +1,5 @@
 // motiongan train ranker: trains a ranker, which scores how well a description fits a motion.
+#include "shared/shell.hpp"
 #include "train/ranking.hpp"
 #include "train/run_start.hpp"
 
@@ -43,7 +44,7 @@ int train_ranker(TrainRankerArgs args, const CLI::App& verb) {
   run_shown(
       trainer, [&](const fs::path& path) { data.write_split(path); }, args.run, start,
       note_of(fields_of(kept)), {{"loss", "loss"}, {"recall1", "R@1"}}, "train ranker");
-  fmt::print("evaluate: {} evaluate ranker {}\n", program(), start.folder.string());
+  fmt::print("evaluate: {} evaluate ranker {}\n", program(), shell_word(start.folder.string()));
   return exit_status();
 }
 

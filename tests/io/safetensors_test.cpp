@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -224,6 +225,48 @@ TEST_CASE("safetensors: malformed files are refused, and the message says why") 
   CHECK(error_of(path) == "no error");
   CHECK(error_of(folder.path / "absent").find("no such file") != std::string::npos);
   CHECK(error_of(folder.path).find("it is not a regular file") != std::string::npos);
+}
+
+namespace {
+
+/// Seconds that reading `header` takes, and what it says.
+std::pair<double, std::string> read_in_time(const std::string& header, std::size_t data) {
+  const Folder folder;
+  put(folder.path / "costly.safetensors", file_of(header, data));
+  const auto start = std::chrono::steady_clock::now();
+  std::string message = error_of(folder.path / "costly.safetensors");
+  return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+          std::move(message)};
+}
+
+std::string repeated(const std::string& text, std::size_t count) {
+  std::string out;
+  for (std::size_t i = 0; i < count; ++i) out += text;
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("safetensors: a header cannot cost more than its bytes") {
+  const auto tensor = [](const std::string& shape) {
+    return R"({"a":{"dtype":"U8","shape":[)" + shape + R"(],"data_offsets":[0,1]}})";
+  };
+  CHECK(read_in_time(tensor(repeated("1,", 15) + "1"), 1).second == "no error");
+  // Time went with the square of the dimensions: 9 MB of them took many minutes.
+  const auto [seconds, message] = read_in_time(tensor(repeated("1,", 4'500'000) + "1"), 1);
+  CHECK(message.find("tensor \"a\": \"shape\" has more than 16 numbers, the most that are read") !=
+        std::string::npos);
+  CHECK(seconds < 5);
+
+  std::string many = "{", notes = R"({"__metadata__":{)";
+  for (std::size_t i = 0; i <= 100'000; ++i) {
+    const std::string name = (i > 0 ? ",\"t" : "\"t") + std::to_string(i) + "\":";
+    many += name + R"({"dtype":"U8","shape":[0],"data_offsets":[0,0]})";
+    notes += name + "\"\"";
+  }
+  CHECK(read_in_time(many + "}", 0).second.find("more than 100000 tensors") != std::string::npos);
+  CHECK(read_in_time(notes + "}}", 0).second.find("__metadata__ has more than 100000 members") !=
+        std::string::npos);
 }
 
 TEST_CASE("safetensors: every truncation of a file is refused") {

@@ -11,6 +11,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "motiongan/io/fields_json.hpp"
 #include "motiongan/io/safetensors.hpp"
@@ -103,6 +104,14 @@ typename Model::Format model_format(const io::SafeTensors& file, const std::stri
   return Model::read_format(text->second, where);
 }
 
+/// Bounds the parameters of a model whose options are read from `file`, which may claim any size. Room is
+/// left for load_parameters() to name the tensor that is missing or has another shape.
+inline std::size_t most_parameters(const io::SafeTensors& file) {
+  std::size_t n = 0;
+  for (const auto& [name, tensor] : file.tensors) n += tensor.count();
+  return 2 * n + 1'000'000;
+}
+
 /// Loads a file that save_model() wrote, or the model in a checkpoint. Throws Error, naming the file and the
 /// problem, for any other file.
 template <class Model>
@@ -110,9 +119,11 @@ Model load_model(const Context& context, const std::filesystem::path& path) {
   const std::string where = path.string();
   const io::SafeTensors file = io::SafeTensors::read(path);
   const auto options = model_options<Model>(file, where);
-  Model model(context, model_format<Model>(file, where), options);
-  io::load_parameters(named_parameters(model), file, where,
-                      is_checkpoint(file) ? std::string(Model::part_name) + "." : "");
+  auto format = model_format<Model>(file, where);
+  const std::string prefix = is_checkpoint(file) ? std::string(Model::part_name) + "." : "";
+  const ParameterLimit limit(most_parameters(file), where);
+  Model model(context, std::move(format), options);
+  io::load_parameters(named_parameters(model), file, where, prefix);
   return model;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "motiongan/autograd/grad.hpp"
@@ -21,6 +22,42 @@ struct NamedParameter {
   ParameterLayout layout = ParameterLayout::plain;
 };
 
+/// While an object of this class exists, this thread creates parameters of at most `most` elements in all:
+/// before one more is allocated, Error is thrown, starting with `where`, the file that the options are from.
+class ParameterLimit {
+ public:
+  ParameterLimit(std::size_t most, std::string where)
+      : left_(most), where_(std::move(where)), outer_(std::exchange(current(), this)) {}
+  ParameterLimit(const ParameterLimit&) = delete;
+  ParameterLimit& operator=(const ParameterLimit&) = delete;
+  ~ParameterLimit() { current() = outer_; }
+
+  /// Counts a parameter that is about to be created.
+  static void count(const Shape& shape) {
+    if (current() != nullptr) current()->take(shape);
+  }
+
+ private:
+  static ParameterLimit*& current() {
+    thread_local ParameterLimit* limit = nullptr;
+    return limit;
+  }
+
+  void take(const Shape& shape) {
+    const std::size_t before = left_;
+    for (std::size_t elements = 1; const std::size_t n : shape)
+      require(!__builtin_mul_overflow(elements, n, &elements) && elements <= before, where_,
+              ": the model's options ask for a parameter of shape ", shape,
+              ", far more numbers than the file ",
+              "holds; the file is damaged, or its options are those of another model");
+    left_ -= element_count(shape);
+  }
+
+  std::size_t left_;
+  std::string where_;
+  ParameterLimit* outer_;
+};
+
 /// Creates parameters with random initial values. The random key of each contains its number in order of
 /// creation: equal seeds and options give equal weights.
 class Initializer {
@@ -31,6 +68,7 @@ class Initializer {
 
   /// Uniform in [-bound, bound].
   Var uniform(Shape shape, double bound) {
+    ParameterLimit::count(shape);
     std::vector<float> values(element_count(shape));
     const RandomKey key{.seed = seed_, .stream = RandomStream::weights, .step = ++count_};
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -41,13 +79,17 @@ class Initializer {
 
   /// Standard normal.
   Var normal(std::size_t rows, std::size_t columns) {
+    ParameterLimit::count({rows, columns});
     return Var::leaf(random_normal(context_,
                                    {.seed = seed_, .stream = RandomStream::weights, .step = ++count_}, 1,
                                    rows, columns)
                          .reshape({rows, columns}));
   }
 
-  Var constant(Shape shape, double value) { return Var::leaf(full(context_, std::move(shape), value)); }
+  Var constant(Shape shape, double value) {
+    ParameterLimit::count(shape);
+    return Var::leaf(full(context_, std::move(shape), value));
+  }
 
  private:
   Context context_;
