@@ -89,19 +89,19 @@ inline std::vector<Var> values_of(const std::vector<NamedParameter>& parameters)
   return values;
 }
 
-/// While an object of this class exists, the parameters are constants: no gradient flows to them, and grad()
-/// with respect to one throws. For a network through which another one is trained.
+/// While an object of this class exists, grad() with respect to one of the parameters throws. For a network
+/// through which another one is trained. Operations are recorded as always, so that a graph from this time
+/// can be differentiated in full later; grad() computes only what its inputs need.
 class Frozen {
  public:
   explicit Frozen(const std::vector<NamedParameter>& parameters) {
     for (const NamedParameter& p : parameters) {
-      if (!p.value->requires_grad()) continue;  // already frozen
       nodes_.push_back(p.value->node());
-      nodes_.back()->requires_grad = false;
+      ++nodes_.back()->frozen;
     }
   }
   ~Frozen() {
-    for (const auto& node : nodes_) node->requires_grad = true;
+    for (const auto& node : nodes_) --node->frozen;
   }
   Frozen(const Frozen&) = delete;
   Frozen& operator=(const Frozen&) = delete;
