@@ -29,14 +29,18 @@ class Initializer {
 
   const Context& context() const { return context_; }
 
-  /// Uniform in [-bound, bound].
+  /// Uniform in [-bound, bound]. Throws Error if the bound is not finite: that of a layer without inputs.
   Var uniform(Shape shape, double bound) {
-    std::vector<float> values(element_count(shape));
+    require(std::isfinite(bound), "weights of shape ", shape,
+            " cannot be initialised: a layer has no inputs, expected at least one channel");
+    Tensor weights(context_, std::move(shape));  // first: it refuses what is too large
+    std::vector<float> values(weights.size());
     const RandomKey key{.seed = seed_, .stream = RandomStream::weights, .step = ++count_};
     for (std::size_t i = 0; i < values.size(); ++i)
       values[i] = static_cast<float>(
           bound * (2 * (random_word(key, 0, static_cast<std::uint32_t>(i)) + 0.5) * 0x1p-32 - 1));
-    return Var::leaf(Tensor::from(context_, std::move(shape), values));
+    weights.write(std::span<const float>(values));
+    return Var::leaf(std::move(weights));
   }
 
   /// Standard normal.
