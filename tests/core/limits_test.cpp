@@ -2,7 +2,8 @@
 #include <doctest/doctest.h>
 
 #include <limits>
-#include <motiongan/nn/linear.hpp>
+#include <motiongan/nn/gru.hpp>
+#include <motiongan/nn/lstm.hpp>
 #include <motiongan/ops/matmul.hpp>
 
 #include "../support/messages.hpp"
@@ -72,6 +73,12 @@ TEST_CASE("the number of elements does not wrap around") {
     CHECK_THROWS_AS(Tensor(context, {0}).reshape(shape), Error);
     CHECK_THROWS_AS(Tensor(context, {0}).view(0, shape), Error);
   }
+}
+
+TEST_CASE("the number of gates does not wrap around") {
+  Initializer init(Context(), 1);
+  CHECK(says(message_of([&] { Lstm(init, 3, quarter, 1); }), "[4, 4611686018427387904] has more elements"));
+  CHECK(says(message_of([&] { Gru(init, 3, quarter * 2); }), "[3, 9223372036854775808] has more elements"));
 }
 
 TEST_CASE("parts of a tensor do not wrap around") {
