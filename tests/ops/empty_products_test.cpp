@@ -1,7 +1,8 @@
 // Matrix products, convolutions and recurrent networks with an axis of size 0.
 #include <doctest/doctest.h>
 
-#include <motiongan/nn/linear.hpp>
+#include <motiongan/nn/lstm.hpp>
+#include <motiongan/nn/self_attention.hpp>
 #include <motiongan/ops/attention.hpp>
 #include <motiongan/ops/gru_rollout.hpp>
 #include <motiongan/ops/lstm.hpp>
@@ -118,6 +119,37 @@ TEST_CASE("recurrent networks of no steps or hidden units are errors") {
                     {some({0, 0}), some({0}), some({0, 3}), some({3, 0}), some({3})}, 2);
       },
       "gru_rollout: gates [1, 2, 0]");
+}
+
+TEST_CASE("layers over nothing") {
+  Initializer init(double_context(), 1);
+  const SelfAttention attention(init, 8);
+  const Conv1d conv(init, 8, 4, 3);
+  const Lstm lstm(init, 8, 4, 2);
+  for (const Shape& shape : {Shape{0, 2, 8}, Shape{5, 0, 8}}) {
+    CHECK(attention(some(shape)).shape() == shape);
+    CHECK(conv(some(shape)).shape() == Shape{shape[0], shape[1], 4});
+    CHECK(conv_down(pair_means(some(shape)), conv.weight, conv.bias, shape[0]).shape() ==
+          Shape{shape[0] / 2, shape[1], 4});
+  }
+  LstmState state, other;
+  CHECK(lstm.advance(some({3, 0, 8}), state).shape() == Shape{3, 0, 4});
+  check_error([&] { lstm.advance(some({0, 2, 8}), other); }, "give at least one step");
+}
+
+TEST_CASE("kernels of sampling have nothing to do for no frames or samples") {
+  const auto& now = double_context().statistics();
+  const auto tensor = [](Shape shape) { return some(std::move(shape)).value(); };
+  const Tensor weight = tensor({2, 8}), bias = tensor({8}), scratch = tensor({100}), classes = tensor({2, 3});
+  const std::size_t before = now.launches;
+  for (const Shape& shape : {Shape{0, 2, 8}, Shape{5, 0, 8}}) {
+    const Tensor x = tensor(shape), all = tensor({shape[0], shape[1], 6});
+    detail::attend_frames(all, scratch, x, {weight, bias}, x, {x, 0}, 3);
+    detail::rows_with_constants(x, classes, {}, {scratch, 0});
+    detail::add_broadcast_relu(x, x, x, shape[0], 1, shape[1] * 8);
+    detail::copy_runs(x, 3, 2, x, 5, 2, 0, 4);
+  }
+  CHECK(now.launches == before);
 }
 
 TEST_CASE("layers without inputs are errors, optimizers of nothing do nothing") {
