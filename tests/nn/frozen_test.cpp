@@ -36,8 +36,8 @@ TEST_CASE("a graph recorded while a parameter was frozen has its whole gradient 
 }
 
 TEST_CASE("the gradient of a frozen parameter is an error, whenever its graph was recorded") {
-  Var p = leaf(3), q = leaf(5);
-  const std::vector<NamedParameter> parameters{{"p", &p}};
+  Var p = leaf(3), q = leaf(5), none;
+  const std::vector<NamedParameter> parameters{{"p", &p}, {"none", &none}};
   const Var before = p * q;
   {
     const Frozen frozen(parameters);

@@ -100,6 +100,7 @@ class Frozen {
  public:
   explicit Frozen(const std::vector<NamedParameter>& parameters) {
     for (const NamedParameter& p : parameters) {
+      if (p.value->empty()) continue;
       nodes_.push_back(p.value->node());
       ++nodes_.back()->frozen;
     }

@@ -175,8 +175,8 @@ inline Var pair_means_adjoint(const Var& g, std::size_t frames) {
 
 inline Var scatter_add_rows(const Var& x, const Indices& index, std::size_t rows);
 
-/// Rows of a table by index: [V, C], n indices -> [n, C]. Throws Error for an index that is not in 0 .. V
-/// - 1.
+/// Rows of a table by index: [V, C], n indices -> [n, C]. Throws Error for an index outside of
+/// 0 .. V - 1.
 inline Var gather_rows(const Var& table, const Indices& index) {
   require(table.value().rank() == 2, "gather_rows: a table ", table.shape(), ", expected [rows, channels]");
   const std::size_t rows = table.dim(0), channels = table.dim(1);
