@@ -88,10 +88,11 @@ TEST_CASE("the memory limit holds, and the error states request, use and limit")
 
 TEST_CASE("one allocation larger than the device allows") {
   const Context context({.memory_limit = std::size_t{1} << 60});
-  const std::size_t too_many = context.device().max_allocation / 4 + 1024;
-  const std::string text = message_of([&] { Tensor(context, {too_many}); });
-  CHECK(says(text, "out of device memory: one buffer of"));
-  CHECK(says(text, "in one allocation"));
+  for (const std::size_t bytes : {context.device().max_allocation + 4096, ~cl_ulong{0}}) {
+    const std::string text = message_of([&] { context.allocate(bytes); });
+    CHECK(says(text, "out of device memory: one buffer of"));
+    CHECK(says(text, "in one allocation"));
+  }
 }
 
 TEST_CASE("MOTIONGAN_MEMORY_MB") {
@@ -160,6 +161,11 @@ TEST_CASE("errors of launches name kernel, file, sizes and shapes") {
                               KernelReal{0});
              }),
              "kernel fill: 8589934592 does not fit 32 bits"));
+  CHECK(says(message_of([&] {
+               context.launch("elementwise", "fill", LaunchGrid::items(std::size_t{1} << 32), x,
+                              std::size_t{15}, KernelReal{0});
+             }),
+             "kernel fill: 4294967296 work-items do not fit 32 bits"));
 
   // The context still works after the errors.
   CHECK(affine(Var::constant(x), 2).value().to_host() == std::vector<float>(15, 2));

@@ -56,6 +56,7 @@ struct Node : std::enable_shared_from_this<Node> {
   Vjp vjp;
   const char* operation = "constant";
   bool requires_grad = false;
+  unsigned frozen = 0;         ///< lifetimes of Frozen around it: grad() with respect to it is an error
   std::size_t id = next_id();  ///< increases with creation: a node's id is larger than its inputs'
 
   Node() = default;

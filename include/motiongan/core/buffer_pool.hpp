@@ -34,6 +34,7 @@ class BufferPool {
   /// A buffer of at least `bytes`; `granted` receives its size. Throws Error if the memory limit, or the
   /// largest allocation of the device, would be exceeded.
   ClBuffer take(std::size_t bytes, std::size_t& granted) {
+    if (bytes > max_allocation_) refuse(bytes);
     granted = round_up(bytes);
     // A slightly larger buffer will do; a much larger one would waste memory.
     if (const auto found = free_.lower_bound(granted);
@@ -45,9 +46,7 @@ class BufferPool {
       statistics_.bytes_in_use += granted;
       return buffer;
     }
-    if (granted > max_allocation_)
-      throw Error("out of device memory: one buffer of ", mega(bytes), " requested, the device allows ",
-                  mega(max_allocation_), " in one allocation; use a smaller batch or fewer frames");
+    if (granted > max_allocation_) refuse(bytes);
     if (statistics_.bytes_in_use + statistics_.bytes_cached + granted > limit_) trim();
     if (statistics_.bytes_in_use + granted > limit_)
       throw Error("out of device memory: ", mega(bytes), " requested, ", mega(statistics_.bytes_in_use),
@@ -81,6 +80,10 @@ class BufferPool {
   }
 
  private:
+  [[noreturn]] void refuse(std::size_t bytes) const {
+    throw Error("out of device memory: one buffer of ", mega(bytes), " requested, the device allows ",
+                mega(max_allocation_), " in one allocation; use a smaller batch or fewer frames");
+  }
   static std::size_t round_up(std::size_t bytes) {
     const std::size_t step = bytes < 65536 ? 256 : 4096;
     return (std::max<std::size_t>(bytes, 1) + step - 1) / step * step;

@@ -23,7 +23,13 @@ struct ContextOptions {
   Precision precision = Precision::f32;
   std::size_t memory_limit = 0;  ///< bytes; 0: MOTIONGAN_MEMORY_MB, else the device's global memory
   bool verbose = false;          ///< print the chosen device to standard error
+  /// Elements of one tensor; 0 or more than most_elements: most_elements. For tests.
+  std::size_t element_limit = 0;
 };
+
+/// The most elements of one tensor: kernels count them in 32 bits. The difference from 2^32 is for the
+/// work-groups, vectors and chunks that reach past the last element.
+constexpr std::size_t most_elements = (std::size_t{1} << 32) - (std::size_t{1} << 20);
 
 /// A scalar kernel argument, converted to the Context's precision.
 struct KernelReal {
@@ -80,6 +86,7 @@ inline void add_argument(KernelArguments& to, cl_mem value) { to.set(value); }
 struct ContextState {
   Device device;
   Precision precision;
+  std::size_t element_limit = most_elements;
   ClContext context;
   ClQueue queue;
   ContextStatistics statistics;
@@ -145,6 +152,7 @@ class Context {
     auto& s = *state_;
     s.device = options.device.empty() ? default_device() : choose_device(all_devices(), options.device);
     s.precision = options.precision;
+    if (options.element_limit > 0) s.element_limit = std::min(options.element_limit, most_elements);
     require(s.precision == Precision::f32 || s.device.has_double, "device ", s.device.name,
             " has no double precision (cl_khr_fp64): use Precision::f32");
     cl_int code = CL_SUCCESS;
@@ -175,6 +183,8 @@ class Context {
   Precision precision() const { return state_->precision; }
   /// Bytes per element: 4 or 8.
   std::size_t real_size() const { return state_->precision == Precision::f64 ? 8 : 4; }
+  /// The most elements of a tensor.
+  std::size_t element_limit() const { return state_->element_limit; }
   unsigned vector_width() const { return state_->programs->vector_width(); }
   cl_command_queue queue() const { return state_->queue.get(); }
   const ContextStatistics& statistics() const { return state_->statistics; }
@@ -220,6 +230,8 @@ class Context {
               const Arguments&... arguments) const {
     if (grid.global[0] == 0 || grid.global[1] == 0 || grid.global[2] == 0) return;
     if (state_->interrupted) stop_if_interrupted();
+    require(grid.global[0] <= std::numeric_limits<cl_uint>::max(), "kernel ", name, ": ", grid.global[0],
+            " work-items do not fit 32 bits; use a smaller batch or fewer frames");
     detail::KernelArguments to{state_->programs->kernel(file, name), state_->precision, name};
     (add_argument(to, arguments), ...);
     cl_event event = nullptr;

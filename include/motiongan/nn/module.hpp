@@ -66,15 +66,19 @@ class Initializer {
 
   const Context& context() const { return context_; }
 
-  /// Uniform in [-bound, bound].
+  /// Uniform in [-bound, bound]. Throws Error if the bound is not finite: that of a layer without inputs.
   Var uniform(Shape shape, double bound) {
     ParameterLimit::count(shape);
-    std::vector<float> values(element_count(shape));
+    require(std::isfinite(bound), "weights of shape ", shape,
+            " cannot be initialised: a layer has no inputs, expected at least one channel");
+    Tensor weights(context_, std::move(shape));  // first: it refuses what is too large
+    std::vector<float> values(weights.size());
     const RandomKey key{.seed = seed_, .stream = RandomStream::weights, .step = ++count_};
     for (std::size_t i = 0; i < values.size(); ++i)
       values[i] = static_cast<float>(
           bound * (2 * (random_word(key, 0, static_cast<std::uint32_t>(i)) + 0.5) * 0x1p-32 - 1));
-    return Var::leaf(Tensor::from(context_, std::move(shape), values));
+    weights.write(std::span<const float>(values));
+    return Var::leaf(std::move(weights));
   }
 
   /// Standard normal.
@@ -131,19 +135,20 @@ inline std::vector<Var> values_of(const std::vector<NamedParameter>& parameters)
   return values;
 }
 
-/// While an object of this class exists, the parameters are constants: no gradient flows to them, and grad()
-/// with respect to one throws. For a network through which another one is trained.
+/// While an object of this class exists, grad() with respect to one of the parameters throws. For a network
+/// through which another one is trained. Operations are recorded as always, so that a graph from this time
+/// can be differentiated in full later; grad() computes only what its inputs need.
 class Frozen {
  public:
   explicit Frozen(const std::vector<NamedParameter>& parameters) {
     for (const NamedParameter& p : parameters) {
-      if (!p.value->requires_grad()) continue;  // already frozen
+      if (p.value->empty()) continue;
       nodes_.push_back(p.value->node());
-      nodes_.back()->requires_grad = false;
+      ++nodes_.back()->frozen;
     }
   }
   ~Frozen() {
-    for (const auto& node : nodes_) node->requires_grad = true;
+    for (const auto& node : nodes_) --node->frozen;
   }
   Frozen(const Frozen&) = delete;
   Frozen& operator=(const Frozen&) = delete;

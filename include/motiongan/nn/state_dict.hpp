@@ -12,6 +12,7 @@ namespace detail {
 /// [taps, out, in] <-> [out, in, taps]: moves the axis of size `taps` from front to back, or the reverse.
 template <class T>
 std::vector<T> move_taps(const std::vector<T>& values, std::size_t taps, bool to_back) {
+  if (values.empty()) return {};
   const std::size_t rest = values.size() / taps;
   std::vector<T> out(values.size());
   for (std::size_t s = 0; s < taps; ++s)
