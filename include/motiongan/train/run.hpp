@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "motiongan/core/clock.hpp"
 #include "motiongan/train/checkpoint.hpp"
@@ -114,13 +115,24 @@ inline void save_run(Trainer& trainer, const RunFiles& files, const RunNotes& no
   }
 }
 
+/// What follows the message of a failed device: how far the run came, and what is left of it.
+inline std::string after_failure(std::size_t iteration, const RunFiles& files,
+                                 std::optional<std::size_t> saved) {
+  const std::string at = concat("\nthe run stopped after iteration ", iteration, "; ");
+  if (files.folder.empty()) return at + "nothing of it was saved";
+  if (!saved)
+    return concat(at, "no checkpoint was written to ", files.folder.string(), " yet: start it again");
+  return concat(at, "the checkpoint of iteration ", *saved, " in ", files.folder.string(),
+                " is kept: resume the run from it");
+}
+
 }  // namespace detail
 
 /// Trains until all iterations are done, the time is up, or should_stop() or a callback returns true; then
 /// saves. `write_split(path)` writes which clips are for training and which for testing. Columns of the log:
 /// iteration, seconds (since this start or resume), iterations_per_second, and the trainer's losses. Throws
-/// Error if save_dir already holds a run and `resume` is off, and DivergedError if a loss is not finite; the
-/// last checkpoint is kept.
+/// Error if save_dir already holds a run and `resume` is off, DivergedError if a loss is not finite, and
+/// DeviceError, saying from where the run can be resumed, if the device fails; the last checkpoint is kept.
 inline RunResult run_training(Trainer& trainer,
                               const std::function<void(const std::filesystem::path&)>& write_split,
                               const RunOptions& run) {
@@ -150,17 +162,26 @@ inline RunResult run_training(Trainer& trainer,
   callbacks.insert(callbacks.end(), run.callbacks.begin(), run.callbacks.end());
 
   auto saved = clock_seconds();
+  std::optional<std::size_t> saved_iteration;
+  if (run.resume && keeps) saved_iteration = trainer.iteration();
+  const auto save = [&] {
+    detail::save_run(trainer, files, run.notes);
+    saved_iteration = trainer.iteration();
+    saved = clock_seconds();
+  };
   RunResult result;
-  while (trainer.iteration() < trainer.iterations() && !result.stopped) {
-    trainer.iterate();
-    for (const RunCallback& callback : callbacks) result.stopped |= callback(trainer);
-    if (result.stopped) break;
-    if (keeps && run.save_every_minutes > 0 && clock_seconds() - saved >= run.save_every_minutes * 60) {
-      detail::save_run(trainer, files, run.notes);
-      saved = clock_seconds();
+  try {
+    while (trainer.iteration() < trainer.iterations() && !result.stopped) {
+      trainer.iterate();
+      for (const RunCallback& callback : callbacks) result.stopped |= callback(trainer);
+      if (result.stopped) break;
+      if (keeps && run.save_every_minutes > 0 && clock_seconds() - saved >= run.save_every_minutes * 60)
+        save();
     }
+    if (keeps) save();
+  } catch (const DeviceError& error) {
+    throw DeviceError(error.what(), detail::after_failure(trainer.iteration(), files, saved_iteration));
   }
-  if (keeps) detail::save_run(trainer, files, run.notes);
   result.stopped = trainer.iteration() < trainer.iterations();
   result.iterations = trainer.iteration();
   return result;
