@@ -3,6 +3,7 @@
 #include <cctype>
 #include <charconv>
 #include <cstdlib>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -132,8 +133,10 @@ inline void survey_platform(cl_platform_id platform, const std::string& name, De
 }  // namespace detail
 
 /// Lists the devices of all platforms; a platform or device that fails becomes a problem and does not hide
-/// the others.
+/// the others. May be called by several threads.
 inline DeviceSurvey survey_devices() {
+  static std::mutex one_at_a_time;  // PoCL crashes if two threads are the first to ask for its devices
+  const std::lock_guard hold(one_at_a_time);
   DeviceSurvey found;
   cl_uint count = 0;
   std::vector<cl_platform_id> platforms;

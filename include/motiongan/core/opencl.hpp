@@ -88,9 +88,9 @@ inline const char* opencl_advice(cl_int code) {
     case CL_MEM_OBJECT_ALLOCATION_FAILURE:
     case CL_OUT_OF_RESOURCES:
     case CL_OUT_OF_HOST_MEMORY:
-      return "; the device or its driver is out of memory: use a smaller --batch or fewer --frames, end "
-             "other "
-             "programs on the device, set MOTIONGAN_MEMORY_MB to what is free, or choose another --device";
+      return "; the device or its driver is out of memory (some drivers also say so when a kernel crashed): "
+             "use a smaller --batch or fewer --frames, end other programs on the device, set "
+             "MOTIONGAN_MEMORY_MB to what is free, or choose another --device";
     case CL_DEVICE_NOT_AVAILABLE:
     case CL_INVALID_COMMAND_QUEUE:
     case CL_INVALID_CONTEXT:
