@@ -58,7 +58,7 @@ TEST_CASE("buffers that fail end a training with an error; it resumes to the sam
   const std::string resume = "train dvgan --resume --save run --iterations 3";
   fails(2, resume);
   const Said late = fails(100, resume);
-  CHECK(late.has("the run stopped after iteration 2; the checkpoint of iteration 2 in run is kept"));
+  CHECK(late.has("the run stopped after iteration 2; the last checkpoint in run is kept"));
   CHECK(late.has("train dvgan --resume --save run"));
   CHECK(call(resume).status == 0);
   CHECK(bytes_of("run/checkpoint.safetensors") == bytes_of("whole/checkpoint.safetensors"));

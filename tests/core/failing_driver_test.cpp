@@ -213,6 +213,7 @@ TEST_CASE("a driver that refuses the option of the language version builds witho
   CHECK(says(text, "clBuildProgram failed with CL_INVALID_BUILD_OPTIONS (-43) for cl/elementwise.cl on " +
                        context.device().name));
   CHECK(says(text, "(options -cl-std=CL1.2 -DREAL=float"));
+  CHECK(says(text, ", and without the first)"));
   faults.refused_option = "-cl-std";
   fill();
   CHECK(x.to_host() == std::vector<float>(4, 2));

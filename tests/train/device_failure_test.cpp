@@ -84,10 +84,22 @@ TEST_CASE("a run whose device fails says where it stopped and resumes from its c
   std::filesystem::remove_all(folder);
   const std::string text = run(false, 3, 1e-9).first;
   CHECK(says(text, "CL_MEM_OBJECT_ALLOCATION_FAILURE"));
-  CHECK(says(text, concat("\nthe run stopped after iteration 2; the checkpoint of iteration 2 in ",
-                          folder.string(), " is kept: resume the run from it")));
+  CHECK(says(text, concat("\nthe run stopped after iteration 2; the last checkpoint in ", folder.string(),
+                          " is kept: resume the run from it")));
   const auto rest = run(true, 0, 5);
   CHECK(rest.first == "no error");
   CHECK(rest.second == whole.second);
   std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("host memory that runs out stops a run in the same way") {
+  const Context context;
+  Dvgan model(context, small_data().format, tiny_sizes);
+  DvganTrainer trainer(model, small_data(), tiny_options);
+  RunOptions options;
+  options.callbacks = {[](const Trainer&) -> bool { throw std::bad_alloc(); }};
+  const auto no_split = [](const std::filesystem::path&) {};
+  const std::string text = message_of([&] { run_training(trainer, no_split, options); });
+  CHECK(says(text, "out of host memory"));
+  CHECK(says(text, "\nthe run stopped after iteration 1; nothing of it was saved"));
 }

@@ -104,13 +104,15 @@ class ProgramCache {
     // Some drivers refuse the option for the language version, and compile 1.2 or later without it.
     const bool refused = code == CL_INVALID_BUILD_OPTIONS || code == CL_INVALID_COMPILER_OPTIONS ||
                          code == CL_BUILD_PROGRAM_FAILURE || code == CL_COMPILE_PROGRAM_FAILURE;
-    if (refused && *standard_ != '\0' && compile(program.get(), "") == CL_SUCCESS) {
+    const bool tries_again = refused && *standard_ != '\0';
+    if (tries_again && compile(program.get(), "") == CL_SUCCESS) {
       standard_ = "";
       return program;
     }
     const std::string reported = driver_.messages.take();
     throw DeviceError("clBuildProgram failed with ", opencl_error_name(code), " for cl/", file, ".cl on ",
-                      device_.name, " (options ", options(standard_), "):\n", log,
+                      device_.name, " (options ", options(standard_),
+                      tries_again ? ", and without the first" : "", "):\n", log,
                       reported.empty() ? "" : "\nthe driver reports: ", reported, build_advice(code, log));
   }
 

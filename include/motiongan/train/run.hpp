@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <new>
 #include <optional>
 
 #include "motiongan/core/clock.hpp"
@@ -116,14 +117,12 @@ inline void save_run(Trainer& trainer, const RunFiles& files, const RunNotes& no
 }
 
 /// What follows the message of a failed device: how far the run came, and what is left of it.
-inline std::string after_failure(std::size_t iteration, const RunFiles& files,
-                                 std::optional<std::size_t> saved) {
+inline std::string after_failure(std::size_t iteration, const RunFiles& files) {
   const std::string at = concat("\nthe run stopped after iteration ", iteration, "; ");
   if (files.folder.empty()) return at + "nothing of it was saved";
-  if (!saved)
+  if (!std::filesystem::exists(files.checkpoint()))
     return concat(at, "no checkpoint was written to ", files.folder.string(), " yet: start it again");
-  return concat(at, "the checkpoint of iteration ", *saved, " in ", files.folder.string(),
-                " is kept: resume the run from it");
+  return concat(at, "the last checkpoint in ", files.folder.string(), " is kept: resume the run from it");
 }
 
 }  // namespace detail
@@ -162,25 +161,23 @@ inline RunResult run_training(Trainer& trainer,
   callbacks.insert(callbacks.end(), run.callbacks.begin(), run.callbacks.end());
 
   auto saved = clock_seconds();
-  std::optional<std::size_t> saved_iteration;
-  if (run.resume && keeps) saved_iteration = trainer.iteration();
-  const auto save = [&] {
-    detail::save_run(trainer, files, run.notes);
-    saved_iteration = trainer.iteration();
-    saved = clock_seconds();
-  };
   RunResult result;
   try {
     while (trainer.iteration() < trainer.iterations() && !result.stopped) {
       trainer.iterate();
       for (const RunCallback& callback : callbacks) result.stopped |= callback(trainer);
       if (result.stopped) break;
-      if (keeps && run.save_every_minutes > 0 && clock_seconds() - saved >= run.save_every_minutes * 60)
-        save();
+      if (keeps && run.save_every_minutes > 0 && clock_seconds() - saved >= run.save_every_minutes * 60) {
+        detail::save_run(trainer, files, run.notes);
+        saved = clock_seconds();
+      }
     }
-    if (keeps) save();
+    if (keeps) detail::save_run(trainer, files, run.notes);
   } catch (const DeviceError& error) {
-    throw DeviceError(error.what(), detail::after_failure(trainer.iteration(), files, saved_iteration));
+    throw DeviceError(error.what(), detail::after_failure(trainer.iteration(), files));
+  } catch (const std::bad_alloc&) {
+    throw DeviceError("out of host memory: end other programs, or use a smaller --batch",
+                      detail::after_failure(trainer.iteration(), files));
   }
   result.stopped = trainer.iteration() < trainer.iterations();
   result.iterations = trainer.iteration();
