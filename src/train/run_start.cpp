@@ -91,12 +91,20 @@ RunResult run_shown(Trainer& trainer, const std::function<void(const fs::path&)>
     bar.update(iteration, values);
   };
   catch_signals();
-  const RunResult result = run_training(trainer, write_split, run);
+  const std::string again =
+      fmt::format("continue: {} {} --resume --save {}", program(), verb, shell_word(start.folder.string()));
+  const RunResult result = [&] {
+    try {
+      return run_training(trainer, write_split, run);
+    } catch (const DeviceError& error) {
+      if (!fs::exists(RunFiles{start.folder}.checkpoint())) throw;
+      throw DeviceError(error.what(), "\n", again);
+    }
+  }();
   bar.finish();
   fmt::print("{} after {} of {} iterations; saved in {}\n", result.stopped ? "stopped" : "finished",
              result.iterations, trainer.iterations(), start.folder.string());
-  if (result.stopped)
-    fmt::print("continue: {} {} --resume --save {}\n", program(), verb, shell_word(start.folder.string()));
+  if (result.stopped) fmt::print("{}\n", again);
   return result;
 }
 

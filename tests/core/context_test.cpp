@@ -1,36 +1,13 @@
 // Context: buffer pool, memory limit, environment variables, errors.
 #include <doctest/doctest.h>
 
-#include <cstdlib>
 #include <motiongan/ops/elementwise.hpp>
 
 #include "../support/messages.hpp"
+#include "../support/setting.hpp"
 
 using namespace motiongan;
 using namespace motiongan::testing;
-
-namespace {
-
-/// Sets an environment variable for its lifetime.
-class Setting {
- public:
-  Setting(const char* name, const char* value) : name_(name) {
-    if (const char* before = std::getenv(name)) before_ = before;
-    setenv(name, value, 1);
-  }
-  ~Setting() {
-    if (before_)
-      setenv(name_, before_->c_str(), 1);
-    else
-      unsetenv(name_);
-  }
-
- private:
-  const char* name_;
-  std::optional<std::string> before_;
-};
-
-}  // namespace
 
 TEST_CASE("a released buffer is reused") {
   const Context context;
@@ -189,4 +166,26 @@ TEST_CASE("statistics count launches, reads and writes") {
   CHECK(now.reads == 0);
   CHECK(y.value().to_host() == std::vector<float>{3, 6});
   CHECK(now.reads == 1);
+}
+
+TEST_CASE("the host memory kept for uploads has a limit, and uploads arrive whole") {
+  const Context context;
+  const auto& now = context.statistics();
+  const std::size_t million = 1'000'000;
+  std::vector<Tensor> tensors;
+  for (int i = 0; i < 20; ++i) {  // 80 MB
+    tensors.push_back(Tensor::from(context, {million}, std::vector<float>(million, static_cast<float>(i))));
+    CHECK(now.bytes_staged <= detail::Staging::limit);
+  }
+  CHECK(now.bytes_staged > detail::Staging::limit / 2);
+  for (std::size_t i = 0; i < tensors.size(); ++i) {
+    const std::vector<float> values = tensors[i].to_host();
+    CHECK(std::all_of(values.begin(), values.end(), [&](float v) { return v == static_cast<float>(i); }));
+  }
+  const std::size_t before = now.bytes_staged, many = detail::Staging::limit / 4 + 1;
+  const Tensor large = Tensor::from(context, {many}, std::vector<float>(many, 3));  // not kept at all
+  CHECK(now.bytes_staged == before);
+  CHECK(large.to_host() == std::vector<float>(many, 3));
+  for (int i = 0; i < 200; ++i) Tensor::from(context, {10}, std::vector<float>(10, 1));
+  CHECK(now.bytes_staged < 64 * 1024);  // small uploads replace the large ones' memory
 }

@@ -48,8 +48,7 @@ inline void gemm_clblast(const Context& context, const GemmCall& g) {
     const CLBlastStatusCode code = context.precision() == Precision::f64
                                        ? run(add ? 1.0 : 0.0, CLBlastDgemm, CLBlastDgemmStridedBatched)
                                        : run(add ? 1.0f : 0.0f, CLBlastSgemm, CLBlastSgemmStridedBatched);
-    require(code == CLBlastSuccess, g, ": CLBlast failed with status ", static_cast<int>(code), " on ",
-            context.device().name);
+    context.check(code, "CLBlast", ": ", g);  // OpenCL's codes, and some of its own
   }
   const cl_uint flags = gemm_flags(g) & ~gemm_accumulate;
   if (flags == 0) return;

@@ -5,6 +5,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <new>
 
 #include "motiongan/core/clock.hpp"
 #include "motiongan/train/checkpoint.hpp"
@@ -108,6 +109,15 @@ inline std::optional<NamedLoss> implausible_loss(const Trainer& trainer) {
   return std::nullopt;
 }
 
+/// What follows the message of a failed device: how far the run came, and what is left of it.
+inline std::string after_failure(std::size_t iteration, const RunFiles& files) {
+  const std::string at = concat("\nthe run stopped after iteration ", iteration, "; ");
+  if (files.folder.empty()) return at + "nothing of it was saved";
+  if (!std::filesystem::exists(files.checkpoint()))
+    return concat(at, "no checkpoint was written to ", files.folder.string(), " yet: start it again");
+  return concat(at, "the last checkpoint in ", files.folder.string(), " is kept: resume the run from it");
+}
+
 /// A run in progress: the loop of run_training().
 class RunLoop {
  public:
@@ -192,6 +202,8 @@ class RunLoop {
       save();
     } catch (const DivergedError&) {
       throw;
+    } catch (const DeviceError&) {
+      throw;
     } catch (const Error& error) {
       run_.warn(concat(error.what(), "; iteration ", trainer_.iteration(),
                        " is not saved, the next save tries again"));
@@ -222,7 +234,15 @@ inline RunResult run_training(Trainer& trainer,
                               const std::function<void(const std::filesystem::path&)>& write_split,
                               const RunOptions& run) {
   check_options(run);
-  return detail::RunLoop(trainer, write_split, run).train();
+  detail::RunLoop loop(trainer, write_split, run);
+  try {
+    return loop.train();
+  } catch (const DeviceError& error) {
+    throw DeviceError(error.what(), detail::after_failure(trainer.iteration(), {run.save_dir}));
+  } catch (const std::bad_alloc&) {
+    throw DeviceError("out of host memory: end other programs, or use a smaller --batch",
+                      detail::after_failure(trainer.iteration(), {run.save_dir}));
+  }
 }
 
 }  // namespace motiongan
