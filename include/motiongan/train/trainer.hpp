@@ -1,6 +1,7 @@
 // The interface of all trainers: iterations, networks with their optimizers, named losses, options.
 #pragma once
 #include <filesystem>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,9 +27,20 @@ struct TrainedPart {
   Optimizer* optimizer = nullptr;
 };
 
-/// The largest number of iterations of `steps` steps each that the 24-bit step of a RandomKey allows.
+/// The sum of the steps of an iteration, or the largest number there is if that would be exceeded.
+inline std::size_t total_steps(std::initializer_list<std::size_t> parts) {
+  std::size_t sum = 0;
+  for (const std::size_t part : parts) sum = part > ~std::size_t{0} - sum ? ~std::size_t{0} : sum + part;
+  return sum;
+}
+
+/// The largest number of iterations of `steps` steps each that the 24-bit step of a RandomKey allows. Throws
+/// Error if that is none.
 inline std::size_t max_iterations(std::size_t steps) {
-  return (std::size_t{1} << 24) / std::max<std::size_t>(steps, 1) - 2;
+  constexpr std::size_t all = std::size_t{1} << 24;
+  require(steps <= all / 3, "an iteration has ", steps, " steps, expected at most ", all / 3,
+          ": random numbers count 2^24 steps; lower critic_steps or generator_steps");
+  return all / std::max<std::size_t>(steps, 1) - 2;
 }
 
 /// The training of one model. run_training() drives it; save_checkpoint() and load_checkpoint() save and
