@@ -12,20 +12,24 @@ namespace motiongan {
 
 /// Statistics of a Context: counters since it was made, and current byte counts.
 struct ContextStatistics {
-  std::size_t allocations = 0;   ///< buffers allocated by the driver
-  std::size_t reads = 0;         ///< copies from device to host (each waits for the queue)
-  std::size_t writes = 0;        ///< copies from host to device
-  std::size_t launches = 0;      ///< kernels enqueued
-  double gemm_flops = 0;         ///< floating-point operations in matrix products
-  std::size_t bytes_in_use = 0;  ///< in live tensors
-  std::size_t bytes_cached = 0;  ///< in free buffers of the pool
-  std::size_t peak_bytes = 0;    ///< maximum of bytes_in_use + bytes_cached
+  std::size_t allocations = 0;     ///< buffers allocated by the driver
+  std::size_t reads = 0;           ///< copies from device to host (each waits for the queue)
+  std::size_t writes = 0;          ///< copies from host to device
+  std::size_t launches = 0;        ///< kernels enqueued
+  double gemm_flops = 0;           ///< floating-point operations in matrix products
+  std::size_t bytes_in_use = 0;    ///< in live tensors
+  std::size_t bytes_cached = 0;    ///< in free buffers of the pool
+  std::size_t peak_bytes = 0;      ///< maximum of bytes_in_use + bytes_cached
+  std::size_t peak_in_use = 0;     ///< maximum of bytes_in_use
+  std::size_t largest_buffer = 0;  ///< bytes of the largest buffer
+  std::size_t bytes_written = 0;   ///< in all writes
 };
 
 namespace detail {
 
 /// Hands out buffers by size. A returned buffer can be reused at once: the queue runs in order, so every
-/// kernel that still reads it finishes before its next owner writes to it.
+/// kernel that still reads it finishes before its next owner writes to it. Without an OpenCL context the
+/// buffers are only counted: all are null.
 class BufferPool {
  public:
   BufferPool(cl_context context, std::size_t limit, std::size_t max_allocation, ContextStatistics& statistics)
@@ -42,7 +46,7 @@ class BufferPool {
       ClBuffer buffer = std::move(found->second);
       free_.erase(found);
       statistics_.bytes_cached -= granted;
-      statistics_.bytes_in_use += granted;
+      use(granted);
       return buffer;
     }
     if (granted > max_allocation_)
@@ -53,6 +57,11 @@ class BufferPool {
       throw Error("out of device memory: ", mega(bytes), " requested, ", mega(statistics_.bytes_in_use),
                   " already in use, limit ", mega(limit_),
                   "; use a smaller batch, or raise ContextOptions::memory_limit or MOTIONGAN_MEMORY_MB");
+    if (context_ == nullptr) {
+      ++statistics_.allocations;
+      use(granted);
+      return {};
+    }
     cl_int code = CL_SUCCESS;
     cl_mem memory = clCreateBuffer(context_, CL_MEM_READ_WRITE, granted, nullptr, &code);
     if (code != CL_SUCCESS) {  // the pool may be caching memory that the driver needs
@@ -62,9 +71,7 @@ class BufferPool {
     check_cl(code, "clCreateBuffer", ": ", mega(bytes), " requested, ", mega(statistics_.bytes_in_use),
              " already in use, limit ", mega(limit_));
     ++statistics_.allocations;
-    statistics_.bytes_in_use += granted;
-    statistics_.peak_bytes =
-        std::max(statistics_.peak_bytes, statistics_.bytes_in_use + statistics_.bytes_cached);
+    use(granted);
     return ClBuffer(memory);
   }
 
@@ -74,6 +81,8 @@ class BufferPool {
     free_.emplace(granted, std::move(buffer));
   }
 
+  std::size_t limit() const { return limit_; }
+
   /// Releases all free buffers to the driver.
   void trim() {
     free_.clear();
@@ -81,6 +90,13 @@ class BufferPool {
   }
 
  private:
+  void use(std::size_t granted) {
+    statistics_.bytes_in_use += granted;
+    statistics_.peak_in_use = std::max(statistics_.peak_in_use, statistics_.bytes_in_use);
+    statistics_.peak_bytes =
+        std::max(statistics_.peak_bytes, statistics_.bytes_in_use + statistics_.bytes_cached);
+    statistics_.largest_buffer = std::max(statistics_.largest_buffer, granted);
+  }
   static std::size_t round_up(std::size_t bytes) {
     const std::size_t step = bytes < 65536 ? 256 : 4096;
     return (std::max<std::size_t>(bytes, 1) + step - 1) / step * step;

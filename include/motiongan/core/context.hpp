@@ -164,6 +164,26 @@ class Context {
     if (options.verbose) std::fprintf(stderr, "device: %s\n", description().c_str());
   }
 
+  /// A context of the same device and precision that computes nothing, to learn what work would need:
+  /// statistics() counts its buffers, launches and products as in a real one, but there is no memory behind
+  /// them. Kernels are not built, written data are dropped, and read data are all 0. `limited`: allocations
+  /// fail where they would in a real context; else there is no limit.
+  Context counting(bool limited = false) const {
+    constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max() / 2;
+    auto state = std::make_shared<detail::ContextState>();
+    state->device = state_->device;
+    state->precision = state_->precision;
+    state->pool = std::make_unique<detail::BufferPool>(nullptr, limited ? memory_limit() : unlimited,
+                                                       limited ? device().max_allocation : unlimited,
+                                                       state->statistics);
+    state->programs = std::make_unique<detail::ProgramCache>(nullptr, state->device, state->precision);
+    return Context(std::move(state));
+  }
+  /// Whether this is a context made by counting().
+  bool only_counts() const { return !state_->queue; }
+
+  /// Bytes that all buffers together may have.
+  std::size_t memory_limit() const { return state_->pool->limit(); }
   const Device& device() const { return state_->device; }
   Precision precision() const { return state_->precision; }
   /// Bytes per element: 4 or 8.
@@ -192,7 +212,9 @@ class Context {
   void trim() const { state_->pool->trim(); }
 
   /// Waits until all enqueued work has finished.
-  void finish() const { check_cl(clFinish(queue()), "clFinish"); }
+  void finish() const {
+    if (!only_counts()) check_cl(clFinish(queue()), "clFinish");
+  }
 
   /// Enqueues kernel `name` of cl/<file>.cl. A Tensor becomes two arguments (buffer, first element), a
   /// std::size_t a cl_uint, a KernelReal a scalar of the context's precision. An empty grid launches nothing.
@@ -201,6 +223,7 @@ class Context {
   void launch(const char* file, const char* name, const LaunchGrid& grid,
               const Arguments&... arguments) const {
     if (grid.global[0] == 0 || grid.global[1] == 0 || grid.global[2] == 0) return;
+    if (only_counts()) return void(++state_->statistics.launches);
     detail::KernelArguments to{state_->programs->kernel(file, name), state_->precision, name};
     (add_argument(to, arguments), ...);
     cl_event event = nullptr;
@@ -219,6 +242,8 @@ class Context {
   void write(cl_mem buffer, std::size_t byte_offset, const void* data, std::size_t bytes) const {
     if (bytes == 0) return;
     ++state_->statistics.writes;
+    state_->statistics.bytes_written += bytes;
+    if (only_counts()) return;
     auto& slot = state_->staging[state_->next_staging++ % state_->staging.size()];
     if (slot.copied) {
       const cl_event event = slot.copied.get();
@@ -237,11 +262,14 @@ class Context {
   void read(cl_mem buffer, std::size_t byte_offset, void* data, std::size_t bytes) const {
     if (bytes == 0) return;
     ++state_->statistics.reads;
+    if (only_counts()) return void(std::memset(data, 0, bytes));
     check_cl(clEnqueueReadBuffer(queue(), buffer, CL_TRUE, byte_offset, bytes, data, 0, nullptr, nullptr),
              "clEnqueueReadBuffer", ": ", bytes, " bytes");
   }
 
  private:
+  explicit Context(std::shared_ptr<detail::ContextState> state) : state_(std::move(state)) {}
+
   template <class T>
   static std::string describe(const T& argument) {
     if constexpr (requires { argument.describe(); })

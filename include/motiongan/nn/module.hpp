@@ -31,6 +31,12 @@ class Initializer {
 
   /// Uniform in [-bound, bound].
   Var uniform(Shape shape, double bound) {
+    if (context_.only_counts()) {  // the values of a large network would take seconds, and its memory
+      ++count_;
+      const Tensor counted(context_, std::move(shape));
+      context_.write(counted.buffer(), 0, nullptr, counted.size() * context_.real_size());
+      return Var::leaf(counted);
+    }
     std::vector<float> values(element_count(shape));
     const RandomKey key{.seed = seed_, .stream = RandomStream::weights, .step = ++count_};
     for (std::size_t i = 0; i < values.size(); ++i)

@@ -43,6 +43,12 @@ inline std::size_t max_iterations(std::size_t steps) {
   return all / std::max<std::size_t>(steps, 1) - 2;
 }
 
+/// Throws Error if `iterations` of `steps` steps each exceed max_iterations().
+inline void check_iterations(std::size_t iterations, std::size_t steps) {
+  require(iterations <= max_iterations(steps), "iterations is ", iterations, ", expected at most ",
+          max_iterations(steps), " with ", steps, " steps each: random numbers count 2^24 steps");
+}
+
 /// The training of one model. run_training() drives it; save_checkpoint() and load_checkpoint() save and
 /// restore it.
 class Trainer {
@@ -74,11 +80,8 @@ class Trainer {
   virtual void require_same_run(const io::SafeTensors& file, const std::string& where) const = 0;
 
  protected:
-  /// Throws Error if `iterations` of `steps` steps each exceed max_iterations().
-  Trainer(std::size_t iterations, std::size_t steps) {
-    require(iterations <= max_iterations(steps), "iterations is ", iterations, ", expected at most ",
-            max_iterations(steps), " with ", steps, " steps each: random numbers count 2^24 steps");
-  }
+  /// Throws Error as check_iterations().
+  Trainer(std::size_t iterations, std::size_t steps) { check_iterations(iterations, steps); }
 
   std::size_t iteration_ = 0;
 };
