@@ -1,16 +1,9 @@
 // Building the action models and their trainers, for `train attention` and `ablate attention`.
 #pragma once
-#include "motiongan/train/attention_trainer.hpp"
-#include "motiongan/train/baseline_trainer.hpp"
+#include "motiongan/experiments/action_ablation.hpp"
 #include "train/training_size.hpp"
 
 namespace motiongan::command {
-
-/// The options of the baseline's training, from those of the attention model's.
-inline BaselineTrainOptions baseline_options(const AttentionTrainOptions& t) {
-  return {
-      .iterations = t.iterations, .batch = t.batch, .balanced = t.balanced, .adam = t.adam, .seed = t.seed};
-}
 
 /// As only_sized(), for either model.
 inline bool only_sized(const Context& context, const motion::ActionDataset& data,
@@ -18,7 +11,7 @@ inline bool only_sized(const Context& context, const motion::ActionDataset& data
                        std::size_t iterations) {
   const std::string lower = size_options(training.batch, options.hidden);
   if (options.generator == ActionGenerator::lstm)
-    return only_sized(context, baseline_options(training), lower, dry_run, iterations,
+    return only_sized(context, AblationVariant::baseline_training(training), lower, dry_run, iterations,
                       [&](const Context& in, const BaselineTrainOptions& trial, const TrainerUse& use) {
                         ActionGan model(in, data.format, options);
                         BaselineTrainer trainer(model, data, trial);

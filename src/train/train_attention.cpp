@@ -46,7 +46,7 @@ RunResult train_either(ActionGan& model, const motion::ActionDataset& data, Atte
     fmt::print("{} iterations, batch {}{}\n", t.iterations, t.batch, resuming);
     fmt::print("Ctrl-C saves and stops. error: MSE of the {} generated frames, normalised\n",
                model.format().frames);
-    BaselineTrainer trainer(model, data, baseline_options(t));
+    BaselineTrainer trainer(model, data, AblationVariant::baseline_training(t));
     return run_shown(trainer, write_split, args.run, start, note, {{"error", "error"}}, "train attention");
   }
   fmt::print("{} iterations of {} critic steps, a classifier step and {}, batch {}{}\n", t.iterations,
