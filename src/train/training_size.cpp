@@ -8,7 +8,7 @@
 namespace motiongan::command {
 namespace {
 
-/// "34.5 MB", "1.2 GB", "46,000 GB".
+/// "34.5 MB", "1.23 GB", "46 TB".
 std::string size_text(double bytes) {
   for (const auto& [unit, name] : {std::pair{1e12, "TB"}, {1e9, "GB"}, {1e6, "MB"}})
     if (bytes >= unit) return concat(brief(bytes / unit, 3), " ", name);

@@ -6,7 +6,7 @@
 namespace motiongan::command {
 
 /// The options of the command line that say how large a training is, with their values, for messages:
-/// "--batch (64), --hidden (256)".
+/// "--batch (now 64) or --hidden (now 256)".
 std::string size_options(std::size_t batch, std::size_t hidden, const char* hidden_option = "--hidden");
 
 /// Throws Error, with what is needed, what there is and the options to `lower`, unless `on_device` and there
