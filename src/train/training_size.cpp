@@ -15,6 +15,13 @@ std::string size_text(double bytes) {
   return concat(brief(bytes / 1e3, 3), " kB");
 }
 
+/// "8.749 million", "567.3 billion".
+std::string count_text(std::size_t count) {
+  const bool billions = count >= 1'000'000'000;
+  return concat(brief(static_cast<double>(count) / (billions ? 1e9 : 1e6)),
+                billions ? " billion" : " million");
+}
+
 /// The value of a line of a file in /proc such as "MemAvailable:   123 kB", in bytes; 0 if there is none.
 double proc_bytes(const char* file, std::string_view name) {
   std::ifstream in(file);
@@ -55,10 +62,9 @@ std::string size_options(std::size_t batch, std::size_t hidden, const char* hidd
 
 void require_fits(const Context& context, const TrainingCost& cost, bool on_device,
                   const std::string& lower) {
-  const std::string need =
-                        concat("this training does not fit: the networks have ",
-                               brief(1e-6 * static_cast<double>(total_parameters(cost))),
-                               " million parameters, and an iteration takes ", size_text(cost.device_in_use)),
+  const std::string need = concat("this training does not fit: the networks have ",
+                                  count_text(total_parameters(cost)), " parameters, and an iteration takes ",
+                                  size_text(cost.device_in_use)),
                     advice = "; lower " + lower;
   const Device& device = context.device();
   const double largest = std::min(static_cast<double>(device.max_allocation),
