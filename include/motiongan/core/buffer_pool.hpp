@@ -12,14 +12,15 @@ namespace motiongan {
 
 /// Statistics of a Context: counters since it was made, and current byte counts.
 struct ContextStatistics {
-  std::size_t allocations = 0;     ///< buffers allocated by the driver
-  std::size_t reads = 0;           ///< copies from device to host (each waits for the queue)
-  std::size_t writes = 0;          ///< copies from host to device
-  std::size_t launches = 0;        ///< kernels enqueued
-  double gemm_flops = 0;           ///< floating-point operations in matrix products
-  std::size_t bytes_in_use = 0;    ///< in live tensors
-  std::size_t bytes_cached = 0;    ///< in free buffers of the pool
-  std::size_t peak_bytes = 0;      ///< maximum of bytes_in_use + bytes_cached
+  std::size_t allocations = 0;   ///< buffers allocated by the driver
+  std::size_t reads = 0;         ///< copies from device to host (each waits for the queue)
+  std::size_t writes = 0;        ///< copies from host to device
+  std::size_t launches = 0;      ///< kernels enqueued
+  double gemm_flops = 0;         ///< floating-point operations in matrix products
+  std::size_t bytes_in_use = 0;  ///< in live tensors
+  std::size_t bytes_cached = 0;  ///< in free buffers of the pool
+  std::size_t peak_bytes = 0;    ///< maximum of bytes_in_use + bytes_cached
+
   std::size_t peak_in_use = 0;     ///< maximum of bytes_in_use
   std::size_t largest_buffer = 0;  ///< bytes of the largest buffer
   std::size_t bytes_written = 0;   ///< in all writes
@@ -90,19 +91,20 @@ class BufferPool {
   }
 
  private:
-  void use(std::size_t granted) {
-    statistics_.bytes_in_use += granted;
-    statistics_.peak_in_use = std::max(statistics_.peak_in_use, statistics_.bytes_in_use);
-    statistics_.peak_bytes =
-        std::max(statistics_.peak_bytes, statistics_.bytes_in_use + statistics_.bytes_cached);
-    statistics_.largest_buffer = std::max(statistics_.largest_buffer, granted);
-  }
   static std::size_t round_up(std::size_t bytes) {
     const std::size_t step = bytes < 65536 ? 256 : 4096;
     return (std::max<std::size_t>(bytes, 1) + step - 1) / step * step;
   }
   static std::string mega(std::size_t bytes) {
     return concat(std::round(static_cast<double>(bytes) / 1e3) / 1e3, " MB");
+  }
+
+  void use(std::size_t granted) {
+    statistics_.bytes_in_use += granted;
+    statistics_.peak_in_use = std::max(statistics_.peak_in_use, statistics_.bytes_in_use);
+    statistics_.peak_bytes =
+        std::max(statistics_.peak_bytes, statistics_.bytes_in_use + statistics_.bytes_cached);
+    statistics_.largest_buffer = std::max(statistics_.largest_buffer, granted);
   }
 
   cl_context context_;

@@ -213,7 +213,8 @@ class Context {
 
   /// Waits until all enqueued work has finished.
   void finish() const {
-    if (!only_counts()) check_cl(clFinish(queue()), "clFinish");
+    if (only_counts()) return;
+    check_cl(clFinish(queue()), "clFinish");
   }
 
   /// Enqueues kernel `name` of cl/<file>.cl. A Tensor becomes two arguments (buffer, first element), a
@@ -222,8 +223,9 @@ class Context {
   template <class... Arguments>
   void launch(const char* file, const char* name, const LaunchGrid& grid,
               const Arguments&... arguments) const {
+    if (only_counts())
+      return void(state_->statistics.launches += grid.global[0] * grid.global[1] * grid.global[2] > 0);
     if (grid.global[0] == 0 || grid.global[1] == 0 || grid.global[2] == 0) return;
-    if (only_counts()) return void(++state_->statistics.launches);
     detail::KernelArguments to{state_->programs->kernel(file, name), state_->precision, name};
     (add_argument(to, arguments), ...);
     cl_event event = nullptr;

@@ -12,19 +12,17 @@ namespace motiongan {
 /// Sizes of the axes, row-major. Motion is [frames, batch, channels].
 using Shape = std::vector<std::size_t>;
 
-/// "[32, 64, 93]"
-inline std::string to_string(const Shape& shape) { return concat(shape); }
-
-/// The product of the sizes. Throws Error if a computer could not count as many bytes.
+/// The product of the sizes. Throws Error if that does not fit 64 bits.
 inline std::size_t element_count(const Shape& shape) {
   std::size_t n = 1;
-  for (std::size_t size : shape) {
-    require(static_cast<double>(n) * static_cast<double>(size) < 1e18, "a tensor of shape ", shape,
+  for (std::size_t size : shape)
+    require(!__builtin_mul_overflow(n, size, &n), "a tensor of shape ", shape,
             " is too large; use a smaller batch or fewer frames");
-    n *= size;
-  }
   return n;
 }
+
+/// "[32, 64, 93]"
+inline std::string to_string(const Shape& shape) { return concat(shape); }
 
 /// A contiguous array on the device, in its context's precision. Copies and views share the data; a new
 /// tensor is not initialised.
