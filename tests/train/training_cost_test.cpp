@@ -82,7 +82,7 @@ TEST_CASE("a context that only counts computes nothing, and fails where the memo
   CHECK(says(message_of([&] {
                Tensor(counting, {std::size_t{1} << 40, std::size_t{1} << 40});
              }),
-             "too large"));
+             "use a smaller batch"));
 }
 
 TEST_CASE("a network and a batch that no computer holds are counted in no time") {
