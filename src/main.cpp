@@ -25,6 +25,15 @@ class Help : public CLI::Formatter {
   }
 };
 
+/// What CLI11 says when it could not convert the value of an option, "Could not convert: --batch = 2.5", with
+/// what was expected instead.
+CLI::ParseError explained(const CLI::ConversionError& error) {
+  const std::string_view text = error.what(), start = "Could not convert: ";
+  if (refused_number().empty() || !text.starts_with(start)) return error;
+  const std::string_view name = text.substr(start.size(), text.find(" = ") - start.size());
+  return CLI::ValidationError(std::string(name), refused_number());
+}
+
 int run(int argc, char** argv) {
   CLI::App app(
       "motiongan trains GANs on motion clips with captions or class labels, and generates new motion for a\n"
@@ -60,6 +69,8 @@ int run(int argc, char** argv) {
   }
   try {
     app.parse(argc, argv);
+  } catch (const CLI::ConversionError& error) {
+    return app.exit(explained(error));
   } catch (const CLI::ParseError& error) {
     return app.exit(error);
   }

@@ -49,8 +49,12 @@ const Verb synth_verb{
       verb->add_option("--clips", args->options.clips, "number of clips, cycling through the actions")
           ->check(not_negative())
           ->capture_default_str();
-      verb->add_option("--seconds", args->options.seconds, "length of each clip")->capture_default_str();
-      verb->add_option("--rate", args->options.rate, "frames per second")->capture_default_str();
+      verb->add_option("--seconds", args->options.seconds, "length of each clip")
+          ->check(positive())
+          ->capture_default_str();
+      verb->add_option("--rate", args->options.rate, "frames per second")
+          ->check(positive())
+          ->capture_default_str();
       verb->add_option("--seed", args->options.seed, "random seed; another one gives other performers")
           ->check(not_negative())
           ->capture_default_str();

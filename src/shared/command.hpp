@@ -2,6 +2,8 @@
 #pragma once
 #include <fmt/format.h>
 
+#include "shared/numbers.hpp"
+// Must follow numbers.hpp, which says how it reads numbers.
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <cstdlib>
@@ -96,7 +98,7 @@ inline void print_fact(std::string_view name, std::string_view text) {
   fmt::print("  {:<11} {}\n", name, text);
 }
 
-/// Accept numbers of at least 0, and above 0. CLI11 itself would wrap a negative integer around.
+/// Accept numbers of at least 0, and above 0.
 CLI::Validator not_negative();
 CLI::Validator positive();
 

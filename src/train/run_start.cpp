@@ -9,6 +9,7 @@ namespace motiongan::command {
 void add_run_options(CLI::App& verb, RunArgs& args, const std::string& save_default) {
   verb.add_option("--save", args.save, "folder of the run [" + save_default + "]")->type_name("DIR");
   verb.add_flag("--resume", args.resume, "continue the run in --save with its original options");
+  add_dry_run(verb, args.dry_run);
   add_options(verb, fields_of(args.run), "Run");
 }
 

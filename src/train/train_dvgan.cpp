@@ -18,11 +18,14 @@ int train_dvgan(TrainDvganArgs args, const CLI::App& verb) {
                                    });
   fill_in_choices(args);
   if (is_done(start, args.run, args.training.iterations)) return 0;
-  make_folder(start.folder);
+  if (!args.run.dry_run) make_folder(start.folder);
 
   const Context context;
   const motion::Dataset data = load_data(args);
   print_data(data, args);
+  if (only_sized(context, args.training, size_options(args.training.batch, args.model.hidden),
+                 args.run.dry_run, args.training.iterations - start.done, builder(data, args.model)))
+    return 0;
   Dvgan model(context, data.format, args.model);
   print_model(model);
   print_saved_to(start.folder, args.run.run.save_every_minutes);

@@ -20,7 +20,7 @@ int train_ranker(TrainRankerArgs args, const CLI::App& verb) {
                                    });
   fill_in_choices(args);
   if (is_done(start, args.run, args.training.iterations)) return 0;
-  make_folder(start.folder);
+  if (!args.run.dry_run) make_folder(start.folder);
 
   const Context context;
   const motion::Dataset data = load_data(args);
@@ -29,6 +29,9 @@ int train_ranker(TrainRankerArgs args, const CLI::App& verb) {
   print_fact("choices", fmt::format("{} of the training clips, {} per step (more if its clips have more)",
                                     counted(descriptions.size(), "distinct description"),
                                     std::min(args.training.descriptions, descriptions.size())));
+  if (only_sized(context, args.training, size_options(args.training.batch, args.model.hidden),
+                 args.run.dry_run, args.training.iterations - start.done, builder(data, args.model)))
+    return 0;
   Ranker ranker(context, data.format, args.model);
   const double millions = 1e-6 * static_cast<double>(parameter_count(named_parameters(ranker)));
   print_fact("ranker", fmt::format("{}, {} million parameters (width {})",

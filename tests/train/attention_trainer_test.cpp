@@ -255,6 +255,11 @@ TEST_CASE("invalid options are refused") {
   CHECK(says(message_of([] { Run({.batch = 0}); }), "batch is 0, expected at least 1"));
   CHECK(says(message_of([] { Run({.skeleton_weight = -1}); }), "skeleton_weight is -1, expected at least 0"));
   CHECK(says(message_of([] { Run({.iterations = 10'000'000}); }), "random numbers count 2^24 steps"));
+  constexpr std::size_t all = ~std::size_t{0};
+  for (const auto& [critic, generator] : {std::pair{all, std::size_t{1}}, {all - 1, 1}, {1, all}, {all, all}})
+    CHECK(says(message_of([&] { Run({.critic_steps = critic, .generator_steps = generator}); }),
+               "an iteration has 18446744073709551615 steps, expected at most 5592405"));
+  CHECK(says(message_of([&] { Run({.iterations = all}); }), "expected at most 2396743 with 7 steps each"));
   const Context context;
   CHECK(says(message_of([&] {
                ActionGan(context, small_actions().format,

@@ -22,12 +22,17 @@ struct ContextStatistics {
   std::size_t bytes_cached = 0;  ///< in free buffers of the pool
   std::size_t peak_bytes = 0;    ///< maximum of bytes_in_use + bytes_cached
   std::size_t bytes_staged = 0;  ///< of host memory, held for uploads
+
+  std::size_t peak_in_use = 0;     ///< maximum of bytes_in_use
+  std::size_t largest_buffer = 0;  ///< bytes of the largest buffer
+  std::size_t bytes_written = 0;   ///< in all writes
 };
 
 namespace detail {
 
 /// Hands out buffers by size. A returned buffer can be reused at once: the queue runs in order, so every
-/// kernel that still reads it finishes before its next owner writes to it.
+/// kernel that still reads it finishes before its next owner writes to it. Without an OpenCL context the
+/// buffers are only counted: all are null.
 class BufferPool {
  public:
   BufferPool(cl_context context, std::size_t limit, std::size_t max_allocation, ContextStatistics& statistics,
@@ -53,7 +58,7 @@ class BufferPool {
       ClBuffer buffer = std::move(found->second);
       free_.erase(found);
       statistics_.bytes_cached -= granted;
-      statistics_.bytes_in_use += granted;
+      use(granted);
       return buffer;
     }
     if (granted > max_allocation_) refuse(bytes);
@@ -63,11 +68,9 @@ class BufferPool {
           "out of device memory: ", mega(bytes), " requested, ", mega(statistics_.bytes_in_use),
           " already in use, limit ", mega(limit_),
           "; use a smaller batch, or raise ContextOptions::memory_limit or MOTIONGAN_MEMORY_MB");
-    ClBuffer buffer = allocate(granted, bytes);
+    ClBuffer buffer = context_ == nullptr ? ClBuffer() : allocate(granted, bytes);
     ++statistics_.allocations;
-    statistics_.bytes_in_use += granted;
-    statistics_.peak_bytes =
-        std::max(statistics_.peak_bytes, statistics_.bytes_in_use + statistics_.bytes_cached);
+    use(granted);
     return buffer;
   }
 
@@ -80,6 +83,8 @@ class BufferPool {
     } catch (const std::bad_alloc&) {
     }
   }
+
+  std::size_t limit() const { return limit_; }
 
   /// Releases all free buffers to the driver.
   void trim() {
@@ -113,6 +118,14 @@ class BufferPool {
   }
   static std::string mega(std::size_t bytes) {
     return concat(std::round(static_cast<double>(bytes) / 1e3) / 1e3, " MB");
+  }
+
+  void use(std::size_t granted) {
+    statistics_.bytes_in_use += granted;
+    statistics_.peak_in_use = std::max(statistics_.peak_in_use, statistics_.bytes_in_use);
+    statistics_.peak_bytes =
+        std::max(statistics_.peak_bytes, statistics_.bytes_in_use + statistics_.bytes_cached);
+    statistics_.largest_buffer = std::max(statistics_.largest_buffer, granted);
   }
 
   cl_context context_;

@@ -138,6 +138,29 @@ class Context {
     if (options.verbose) std::fprintf(stderr, "device: %s\n", description().c_str());
   }
 
+  /// A context of the same device and precision that computes nothing, to learn what work would need:
+  /// statistics() counts its buffers, launches and products as in a real one, but there is no memory behind
+  /// them. Kernels are not built, written data are dropped, and read data are all 0. `limited`: allocations
+  /// fail where they would in a real context; else there is no limit.
+  Context counting(bool limited = false) const {
+    constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max() / 2;
+    auto state = std::make_shared<detail::ContextState>();
+    state->device = state_->device;
+    state->precision = state_->precision;
+    state->driver.device = state->device.name;
+    state->element_limit = limited ? state_->element_limit : unlimited;
+    state->pool = std::make_unique<detail::BufferPool>(nullptr, limited ? memory_limit() : unlimited,
+                                                       limited ? device().max_allocation : unlimited,
+                                                       state->statistics, state->driver);
+    state->programs =
+        std::make_unique<detail::ProgramCache>(nullptr, state->device, state->precision, state->driver);
+    return Context(std::move(state));
+  }
+  /// Whether this is a context made by counting().
+  bool only_counts() const { return !state_->queue; }
+
+  /// Bytes that all buffers together may have.
+  std::size_t memory_limit() const { return state_->pool->limit(); }
   const Device& device() const { return state_->device; }
   Precision precision() const { return state_->precision; }
   /// Bytes per element: 4 or 8.
@@ -178,7 +201,10 @@ class Context {
   }
 
   /// Waits until all enqueued work has finished.
-  void finish() const { check(clFinish(queue()), "clFinish"); }
+  void finish() const {
+    if (only_counts()) return;
+    check(clFinish(queue()), "clFinish");
+  }
 
   /// An event that is complete once all work enqueued so far has finished.
   ClEvent marker() const {
@@ -197,6 +223,8 @@ class Context {
   template <class... Arguments>
   void launch(const char* file, const char* name, const LaunchGrid& grid,
               const Arguments&... arguments) const {
+    if (only_counts())
+      return void(state_->statistics.launches += grid.global[0] * grid.global[1] * grid.global[2] > 0);
     if (grid.global[0] == 0 || grid.global[1] == 0 || grid.global[2] == 0) return;
     if (state_->interrupted) stop_if_interrupted();
     require(grid.global[0] <= std::numeric_limits<cl_uint>::max(), "kernel ", name, ": ", grid.global[0],
@@ -220,6 +248,8 @@ class Context {
   void write(cl_mem buffer, std::size_t byte_offset, const void* data, std::size_t bytes) const {
     if (bytes == 0) return;
     ++state_->statistics.writes;
+    state_->statistics.bytes_written += bytes;
+    if (only_counts()) return;
     state_->staging.upload(state_->driver, queue(), buffer, byte_offset, data, bytes);
     state_->statistics.bytes_staged = state_->staging.bytes();
   }
@@ -228,11 +258,14 @@ class Context {
   void read(cl_mem buffer, std::size_t byte_offset, void* data, std::size_t bytes) const {
     if (bytes == 0) return;
     ++state_->statistics.reads;
+    if (only_counts()) return void(std::memset(data, 0, bytes));
     check(clEnqueueReadBuffer(queue(), buffer, CL_TRUE, byte_offset, bytes, data, 0, nullptr, nullptr),
           "clEnqueueReadBuffer", ": ", bytes, " bytes");
   }
 
  private:
+  explicit Context(std::shared_ptr<detail::ContextState> state) : state_(std::move(state)) {}
+
   template <class T>
   static std::string describe(const T& argument) {
     if constexpr (requires { argument.describe(); })

@@ -40,6 +40,8 @@ inline Caption caption_of_line(std::string_view line, std::string_view place) {
              stop = number_of(line.substr(last + 1));
   if (!start || !stop) return {std::string(line)};
   Caption out{std::string(trimmed(line.substr(0, line.find('#'))))};
+  require(!std::isinf(*start) && !std::isinf(*stop), place, ": found the times ", *start, " to ", *stop,
+          " s, expected finite numbers, or nan for the clip's start or end");
   const double begin = std::isnan(*start) ? 0 : *start;
   const double end = std::isnan(*stop) ? std::numeric_limits<double>::infinity() : *stop;
   if (begin == 0 && (end == 0 || std::isinf(end))) return out;

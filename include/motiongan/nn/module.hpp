@@ -72,6 +72,11 @@ class Initializer {
     require(std::isfinite(bound), "weights of shape ", shape,
             " cannot be initialised: a layer has no inputs, expected at least one channel");
     Tensor weights(context_, std::move(shape));  // first: it refuses what is too large
+    if (context_.only_counts()) {  // the values of a large network would take seconds, and its memory
+      ++count_;
+      context_.write(weights.buffer(), 0, nullptr, weights.size() * context_.real_size());
+      return Var::leaf(weights);
+    }
     std::vector<float> values(weights.size());
     const RandomKey key{.seed = seed_, .stream = RandomStream::weights, .step = ++count_};
     for (std::size_t i = 0; i < values.size(); ++i)
