@@ -1,78 +1,20 @@
 // The motiongan command: parses the command line and runs the verb. Each verb registers itself from its own
 // file.
-#include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
-#include <map>
+#include <iostream>
 #include <new>
 
-#include "shared/command.hpp"
-
-namespace motiongan::command {
-namespace {
-
-/// CLI11's help without the "{false}" notes on negated flags.
-class Help : public CLI::Formatter {
- public:
-  std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
-    std::string name = CLI::Formatter::make_option_name(option, is_positional);
-    for (const std::string note = "{false}"; name.find(note) != std::string::npos;)
-      name.erase(name.find(note), note.size());
-    return name;
-  }
-};
-
-int run(int argc, char** argv) {
-  CLI::App app(
-      "motiongan trains GANs on motion clips with captions or class labels, and generates new motion for a\n"
-      "text or a class.\n"
-      "`motiongan VERB --help` lists the options of a verb; `motiongan demo` is a tour of a few minutes.");
-  app.name("motiongan");
-  app.set_version_flag("--version", "motiongan " MOTIONGAN_VERSION);
-  app.require_subcommand(1);
-  app.fallthrough();
-  app.formatter(std::make_shared<Help>());
-  app.get_formatter()->column_width(34);
-  app.add_option_function<std::string>(
-         "--device",
-         [](const std::string& wish) {
-           require(setenv("MOTIONGAN_DEVICE", wish.c_str(), 1) == 0, "cannot set MOTIONGAN_DEVICE");
-         },
-         "OpenCL device: cpu, gpu, part of its name, or NAME:index (overrides MOTIONGAN_DEVICE; see "
-         "`motiongan devices`)")
-      ->type_name("DEVICE");
-  Job job;
-  std::map<std::string, CLI::App*> groups;
-  for (const auto& [name, description] :
-       {std::pair{"train", "Train a model on motion clips with captions or classes"},
-        {"ablate", "Train a model with and without each of its parts, and compare"},
-        {"evaluate", "Evaluate models and motion with the papers' metrics and others"}}) {
-    groups[name] = app.add_subcommand(name, description);
-    groups[name]->require_subcommand(1);
-  }
-  std::sort(Verb::all().begin(), Verb::all().end());
-  for (const auto& [name, add] : Verb::all()) {
-    const std::size_t space = name.find(' ');
-    add(space == std::string::npos ? app : *groups.at(name.substr(0, space)), job);
-  }
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error);
-  }
-  return job();
-}
-
-}  // namespace
-}  // namespace motiongan::command
+#include "shared/command_line.hpp"
 
 int main(int argc, char** argv) {
   // Line-buffered, so that stdout and the progress on stderr keep their order when both go to one file.
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   if (argc > 0 && *argv[0] != '\0') motiongan::command::program() = argv[0];
   try {
-    return motiongan::command::run(argc, argv);
+    motiongan::command::CommandLine line(std::cout, std::cerr);
+    const std::optional<int> status = line.parse({argv + (argc > 0 ? 1 : 0), argv + argc});
+    return status ? *status : line.run();
   } catch (const std::bad_alloc&) {
     std::fputs("motiongan: out of memory\n", stderr);
   } catch (const std::exception& error) {
