@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "inspect/info.hpp"
+#include "motiongan/io/fields_json.hpp"
 #include "motiongan/io/safetensors.hpp"
 #include "motiongan/models/action_gan.hpp"
 #include "motiongan/models/dvgan.hpp"
@@ -43,7 +44,7 @@ void print_wrapped(std::string_view name, const std::vector<std::string>& texts,
 
 /// Prints options, as the command or the library stores them in files.
 void print_options(std::string_view fact, const std::string& json) {
-  const auto options = nlohmann::json::parse(json, nullptr, false);
+  const auto options = io::parse_json(json);
   if (!options.is_object()) return;
   std::vector<std::string> texts;
   for (const auto& [key, value] : options.items()) {

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "motiongan/formats/text_file.hpp"
+#include "motiongan/io/fields_json.hpp"
 #include "motiongan/train/progress.hpp"
 #include "shared/signals.hpp"
 
@@ -44,8 +45,7 @@ std::string described(const TrainingBudget& budget) {
 
 bool has_had(const fs::path& folder, const TrainingBudget& budget) {
   if (!fs::exists(mark_of(folder))) return false;
-  const auto mark =
-      nlohmann::json::parse(motion::read_text(mark_of(folder), "record of a finished run"), nullptr, false);
+  const auto mark = io::parse_json(motion::read_text(mark_of(folder), "record of a finished run"));
   try {
     return within(budget.minutes, mark.at("minutes").get<double>()) &&
            within(static_cast<double>(budget.iterations),

@@ -9,6 +9,7 @@
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/data/caption_file.hpp"
+#include "motiongan/io/json_depth.hpp"
 
 namespace motiongan::motion {
 
@@ -56,9 +57,11 @@ inline void add_json_list(CaptionFile& file, const OrderedJson& list) {
   }
 }
 
-/// Parses the text. Throws Error, with nlohmann's line and column, for a syntax error, and for a clip that
-/// the top-level object has twice, of which the parser would keep only one.
+/// Parses the text. Throws Error, with nlohmann's line and column, for a syntax error, for deep nesting, and
+/// for a clip that the top-level object has twice, of which the parser would keep only one.
 inline OrderedJson parse_caption_document(std::string_view text, std::string_view name) {
+  require(!io::nests_too_deeply(text), name, ": found more than ", io::most_nested_json,
+          " lists or objects within each other, expected {\"clip\": [\"caption\", ...]}");
   std::set<std::string> keys;
   std::string twice;
   const auto check_key = [&](int depth, OrderedJson::parse_event_t event, OrderedJson& value) {

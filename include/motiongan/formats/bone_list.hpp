@@ -62,11 +62,12 @@ inline void write_bone_list(const std::filesystem::path& path, const Skeleton& s
   for (std::size_t j = 0; j < skeleton.size(); ++j) {
     const std::string& name = skeleton.joints[j].name;
     const int parent = skeleton.joints[j].parent;
-    const bool sound = !name.empty() && name != "-" && name.front() != '#' && name.front() != ' ' &&
-                       name.back() != ' ' && name.find_first_of("\t\r\n\v\f") == name.npos;
+    // What the reader takes: it trims lines, and blanks within a name are part of it.
+    const bool sound = !name.empty() && name != "-" && name.front() != '#' && trimmed(name) == name &&
+                       name.find_first_of("\t\r\n") == name.npos;
     require(
         sound, "a joint called '", name, "' cannot be written to ", path.string(),
-        ": a name must not be empty or -, contain a tab or line break, begin or end with a space, or begin "
+        ": a name must not be empty or -, contain a tab or line break, begin or end with a blank, or begin "
         "with #");
     text +=
         name + '\t' + (parent < 0 ? "-" : skeleton.joints.at(static_cast<std::size_t>(parent)).name) + '\n';

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "motiongan/core/fields.hpp"
+#include "motiongan/io/json_depth.hpp"
 
 namespace motiongan::io {
 
@@ -111,10 +112,17 @@ inline nlohmann::json fields_to_json(const FieldList& fields) {
 }
 inline std::string fields_to_text(const FieldList& fields) { return fields_to_json(fields).dump(); }
 
+/// Parses JSON; the result is discarded() for a text that is none, or that nests too deeply.
+inline nlohmann::json parse_json(const std::string& text) {
+  if (nests_too_deeply(text)) return nlohmann::json::value_t::discarded;
+  return nlohmann::json::parse(text, nullptr, false);
+}
+
 /// Parses a JSON object. Throws Error, starting with `where`, if `text` is anything else.
 inline nlohmann::json parse_object(const std::string& text, const std::string& where) {
-  nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
-  require(json.is_object(), where, ": cannot be read, expected a JSON object");
+  nlohmann::json json = parse_json(text);
+  require(json.is_object(), where, ": cannot be read, expected a JSON object",
+          nests_too_deeply(text) ? concat(" that nests at most ", most_nested_json, " deep") : std::string());
   return json;
 }
 
@@ -131,8 +139,8 @@ inline void fields_from_text(const FieldList& fields, const std::string& text, c
 /// has none to compare.
 inline bool same_format(const std::string& then, const std::string& now) {
   if (then == now) return true;
-  const nlohmann::json before = nlohmann::json::parse(then, nullptr, false);
-  nlohmann::json after = nlohmann::json::parse(now, nullptr, false);
+  const nlohmann::json before = parse_json(then);
+  nlohmann::json after = parse_json(now);
   if (!before.is_object() || !after.is_object()) return false;
   for (const char* key : {"unit_metres", "clips_up"})
     if (!before.contains(key)) after.erase(key);

@@ -239,6 +239,7 @@ class SearchIndex {
     const std::size_t n = size.size();
     require(modified.size() == n && frames.size() == n && begin.size() == n, path.string(),
             ": its lists of clips differ in length");
+    const std::size_t rows = index.frames_.plain.size() / index.layout_.columns();
     auto at = names.begin();
     const auto text = [&] {
       const auto end = std::find(at, names.end(), '\0');
@@ -248,7 +249,8 @@ class SearchIndex {
       return out;
     };
     for (std::size_t i = 0; i < n; ++i) {
-      require(frames[i] >= 0, path.string(), ": clip ", i, " has ", frames[i], " frames");
+      require(frames[i] >= 0 && static_cast<std::size_t>(frames[i]) <= rows - index.rows_, path.string(),
+              ": clip ", i, " has ", frames[i], " frames, and ", rows - index.rows_, " are left");
       SearchClip clip{text(),   size[i], modified[i], static_cast<std::size_t>(frames[i]),
                       begin[i], {},      index.rows_};
       clip.left_out = text();
