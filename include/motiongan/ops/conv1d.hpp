@@ -75,7 +75,9 @@ inline Tensor pack_taps(const Context& context, GemmCall call, std::size_t taps_
 
 /// Rows of one frame: the product of all axes but the first and the last.
 inline std::size_t frame_rows(const Tensor& x) {
-  return element_count({x.shape().begin() + 1, x.shape().end() - 1});
+  std::size_t rows = 1;
+  for (std::size_t i = 1; i + 1 < x.rank(); ++i) rows *= x.dim(i);
+  return rows;
 }
 
 inline Tensor conv1d_value(const Tensor& x, const Tensor& w, const Offsets& offsets, std::size_t frames_out,
