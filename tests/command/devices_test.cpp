@@ -52,12 +52,12 @@ TEST_CASE("buffers that fail end a training with an error; it resumes to the sam
     return said;
   };
   fails(1, train + "--save first --iterations 3");
-  const Said early = fails(100, train + "--save early --iterations 3");
+  const Said early = fails(200, train + "--save early --iterations 3");
   CHECK(early.has("the run stopped after iteration 0; no checkpoint was written to early yet"));
   REQUIRE(call(train + "--save run --iterations 2").status == 0);
   const std::string resume = "train dvgan --resume --save run --iterations 3";
   fails(2, resume);
-  const Said late = fails(100, resume);
+  const Said late = fails(200, resume);
   CHECK(late.has("the run stopped after iteration 2; the last checkpoint in run is kept"));
   CHECK(late.has("train dvgan --resume --save run"));
   CHECK(call(resume).status == 0);
