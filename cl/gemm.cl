@@ -45,7 +45,7 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm(
   const size_t residual_row = g.residual_row;
   const uint panels_at_once = min(g.panels_at_once, (uint)BLOCK);
   const uint block = BLOCK / panels_at_once;
-  const bool together = segments * k <= block;
+  const bool together = k <= block / segments;
 
   for (uint first_column = column_begin; first_column < column_end;
        first_column += panels_at_once * COLUMNS) {

@@ -20,7 +20,7 @@ typedef JOIN(REAL_BITS, VW) maskv;  // the result of comparing two realv
 #define vstore JOIN(vstore, VW)
 
 /// Sum over the lanes of a vector, in a fixed order.
-inline real lane_sum(realv v) {
+static inline real lane_sum(realv v) {
 #if VW == 16
   JOIN(REAL, 8) a = v.lo + v.hi;
   JOIN(REAL, 4) b = a.lo + a.hi;
@@ -38,13 +38,13 @@ inline real lane_sum(realv v) {
 
 /// Loads `left` (< VW) elements into the first lanes; the others are zero. Tails run through the same vector
 /// code as full vectors, so that an element's value does not depend on its position in the array.
-inline realv load_part(global const real* p, uint left) {
+static inline realv load_part(global const real* p, uint left) {
   real lanes[VW];
   for (uint j = 0; j < VW; ++j) lanes[j] = j < left ? p[j] : (real)0;
   return vload(0, lanes);
 }
 
-inline void store_part(realv v, global real* p, uint left) {
+static inline void store_part(realv v, global real* p, uint left) {
   real lanes[VW];
   vstore(v, 0, lanes);
   for (uint j = 0; j < left; ++j) p[j] = lanes[j];
@@ -65,13 +65,13 @@ typedef realv realv_anywhere __attribute__((aligned(4)));
 #define STORE_VECTOR(v, p) vstore(v, 0, p)
 #endif
 
-inline realv sigmoid_v(realv v) { return 1 / (1 + exp(-v)); }
+static inline realv sigmoid_v(realv v) { return 1 / (1 + exp(-v)); }
 
 /// Loads min(left, VW) elements.
-inline realv load_some(global const real* p, uint left) {
+static inline realv load_some(global const real* p, uint left) {
   return left >= VW ? LOAD_VECTOR(p) : load_part(p, left);
 }
-inline void store_some(realv v, global real* p, uint left) {
+static inline void store_some(realv v, global real* p, uint left) {
   if (left >= VW)
     STORE_VECTOR(v, p);
   else

@@ -104,6 +104,7 @@
 #include "motiongan/train/progress.hpp"
 #include "motiongan/train/ranker_trainer.hpp"
 #include "motiongan/train/train.hpp"
+#include "motiongan/train/training_cost.hpp"
 #include "motiongan/train/wgan_gp.hpp"
 //
 #include "motiongan/sample/action_generate.hpp"

@@ -8,6 +8,7 @@
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/procedural/procedural.hpp"
 #include "motiongan/train/progress.hpp"
+#include "shared/shell.hpp"
 #include "shared/show.hpp"
 #include "shared/signals.hpp"
 #include "train/training.hpp"
@@ -31,6 +32,7 @@ void renew(const fs::path& out) {
     std::getline(in, first);
     require(first.starts_with(marker), out.string(),
             " already exists and was not made by the demo; choose another --out");
+    if (fs::is_directory(out / "save")) const io::FolderLock no_demo_is_running(out / "save");
     for (const auto& entry : fs::directory_iterator(out))
       if (entry.path() != note) fs::remove_all(entry.path());
   }
@@ -67,7 +69,7 @@ RunResult train_for(double minutes, Dvgan& model, const motion::Dataset& data, D
   run.save_every_minutes = 0;
   run.max_minutes = minutes;
   run.notes = {{"options", note_of(fields_of(args))}};
-  run.should_stop = [] { return caught_signal() != 0; };
+  run.interrupted = [] { return stop_requested(); };
   const auto start = std::chrono::steady_clock::now();
   run.report = [&](std::size_t iteration, std::span<const NamedLoss> losses) {
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
@@ -187,11 +189,11 @@ int run_demo(const DemoArgs& demo) {
   fmt::print("wrote {}: the training curves\n", (out / "training.png").string());
   judge(log, compare_with_real(model, data));
 
-  const std::string save = (out / "save").string();
+  const std::string save = shell_word((out / "save").string());
   fmt::print("\nopen {} in a browser\n", fs::absolute(out / "motions.html").lexically_normal().string());
   fmt::print("\nmore from this model\n");
-  fmt::print("  {} generate {} --text \"{}\" --count 4 --rate 30 --html more.html\n", program(), save,
-             clips_to_show(data).front()->captions.front());
+  fmt::print("  {} generate {} --text {} --count 4 --rate 30 --html more.html\n", program(), save,
+             shell_quoted(clips_to_show(data).front()->captions.front()));
   fmt::print("  {} train dvgan --resume --save {}\n", program(), save);
   fmt::print("the same with your own clips (captions.tsv: a line `clip id <TAB> description` for each)\n");
   fmt::print("  {} train dvgan my-clips --captions captions.tsv --save save/mine\n", program());

@@ -75,6 +75,7 @@ int run_ablation(AblateArgs args, const CLI::App& verb) {
   // Fails now, not after hours of training, if no test clip is long enough for a window.
   choose_windows(data, args.evaluation.frames, args.evaluation.windows, args.evaluation.seed);
   if (!args.evaluate_only) {
+    if (only_sized(context, data, variants, args.training)) return 0;
     print_saved_to(args.save, args.training.budget.save_every_minutes);
     const bool all = train_variants(context, data, args.save, variants, args.training,
                                     [&](const AblationVariant& variant) { return notes_of(args, variant); });
@@ -117,6 +118,7 @@ const Verb ablate_attention_verb{
           ->delimiter(',')
           ->type_name("A,B");
       verb->add_flag("--evaluate-only", a.evaluate_only, "train nothing; measure the existing models");
+      add_dry_run(*verb, a.training.dry_run);
       add_training_options(*verb, a.training);
       const auto option = [&](const char* name, auto& member, const char* text) {
         return verb->add_option(name, member, text)->capture_default_str()->group("Evaluation");

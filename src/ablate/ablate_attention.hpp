@@ -13,10 +13,15 @@ struct AblationTraining {
   ActionGanOptions model;
   AttentionTrainOptions training;
   TrainingBudget budget;
+  bool dry_run = false;
 };
 
 /// Makes the notes that a variant's checkpoint stores: its options.
 using VariantNotes = std::function<RunNotes(const AblationVariant&)>;
+
+/// Throws Error unless all variants fit the machine; with --dry-run prints what each takes and returns true.
+bool only_sized(const Context& context, const motion::ActionDataset& data,
+                const std::vector<const AblationVariant*>& variants, const AblationTraining& training);
 
 /// Trains the variants that have not used up their budget, one after the other, each in save/NAME; one that
 /// has used part of it continues. If one diverges, that is printed and it stays as it was last saved. Returns

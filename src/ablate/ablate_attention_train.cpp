@@ -1,8 +1,22 @@
 // motiongan ablate attention: trains the variants, all with the same budget.
 #include "ablate/ablate_attention.hpp"
 #include "shared/signals.hpp"
+#include "train/action_training.hpp"
 
 namespace motiongan::command {
+
+bool only_sized(const Context& context, const motion::ActionDataset& data,
+                const std::vector<const AblationVariant*>& variants, const AblationTraining& training) {
+  for (const AblationVariant* variant : variants) {
+    AttentionTrainOptions options = variant->training(training.training);
+    options.iterations = iterations_of(training.budget, options.steps());
+    if (training.dry_run) fmt::print("{}\n", variant->name);
+    only_sized(context, data, variant->model(training.model), options, training.dry_run,
+               training.budget.iterations);
+  }
+  return training.dry_run;
+}
+
 bool train_variants(const Context& context, const motion::ActionDataset& data, const fs::path& save,
                     const std::vector<const AblationVariant*>& variants, const AblationTraining& training,
                     const VariantNotes& notes) {

@@ -18,7 +18,7 @@ struct AblateDvganArgs : DvganArgs {
   std::size_t seeds = 3;
   std::string ranker;
   RankerArgs ranking;  // options of the ranker that is trained if none is given
-  bool evaluate_only = false;
+  bool evaluate_only = false, dry_run = false;
   ModelEvaluationOptions evaluation;
 };
 
@@ -66,6 +66,27 @@ void take_options_of(AblateDvganArgs& args, const CLI::App& verb, const std::vec
       args.training.seed = first_seed;
       return;
     }
+}
+
+/// Throws Error unless the ranker and all variants fit the machine; with --dry-run prints what each takes and
+/// returns true.
+bool only_sized(const Context& context, const motion::Dataset& data, const AblateDvganArgs& args,
+                const std::vector<DvganVariant>& variants) {
+  const RankerArgs& ranking = args.ranking;
+  if (args.ranker.empty()) {
+    if (args.dry_run) fmt::print("ranker\n");
+    only_sized(context, ranking.training,
+               size_options(ranking.training.batch, ranking.model.hidden, "--ranker-hidden"), args.dry_run,
+               ranking.training.iterations, builder(data, ranking.model));
+  }
+  for (const DvganVariant& variant : variants) {
+    DvganArgs run = training_of(args, variant, args.training.seed);
+    run.training.iterations = iterations_of(args.budget, run.training.steps());
+    if (args.dry_run) fmt::print("{}\n", variant.name());
+    only_sized(context, run.training, size_options(run.training.batch, run.model.hidden), args.dry_run,
+               args.budget.iterations, builder(data, run.model));
+  }
+  return args.dry_run;
 }
 
 /// Returns false if a signal stopped it.
@@ -141,6 +162,7 @@ int run_ablation(AblateDvganArgs args, const CLI::App& verb) {
   print_fact("device", describe(context.device()));
   print_fact("variants", fmt::format("{}, {} each", variants.size(), counted(seeds.size(), "seed")));
   if (!args.evaluate_only) {
+    if (only_sized(context, data, args, variants)) return 0;
     print_saved_to(args.save, args.budget.save_every_minutes);
     catch_signals();
   }
@@ -179,6 +201,7 @@ const Verb ablate_dvgan_verb{
           ->capture_default_str();
       verb->add_option("--seed", a.training.seed, "first seed")->check(not_negative())->capture_default_str();
       verb->add_flag("--evaluate-only", a.evaluate_only, "train nothing; measure the existing models");
+      add_dry_run(*verb, a.dry_run);
       add_budget_options(*verb, a.budget, "for each run", "Training");
       add_options(*verb, fields_of(a.model), "Model", {.only = {"hidden", "taps"}});
       add_options(

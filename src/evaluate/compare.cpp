@@ -3,6 +3,7 @@
 #include "motiongan/metrics/statistics.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "shared/clip_reading.hpp"
+#include "shared/outputs.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -21,17 +22,19 @@ std::vector<motion::Motion> load(const std::vector<std::string>& where, double r
   std::vector<motion::Motion> out;
   std::size_t short_ones = 0;
   for (const std::string& given : where)
-    for_each_clip(given, options, [&](const fs::path&, const std::string&, motion::LoadedMotion&& loaded) {
-      motion::Motion motion = std::move(loaded.motion);
-      if (rate > 0) motion = motion::resample(motion, rate);
-      motion.frames < 2 ? void(++short_ones) : out.push_back(std::move(motion));
-    });
+    for_each_clip(given, options,
+                  [&](const fs::path& file, const std::string&, motion::LoadedMotion&& loaded) {
+                    motion::Motion motion = std::move(loaded.motion);
+                    if (rate > 0) motion = motion::resample(motion, rate, file.string());
+                    motion.frames < 2 ? void(++short_ones) : out.push_back(std::move(motion));
+                  });
   if (short_ones > 0)
     fmt::print(stderr, "motiongan: {} with fewer than two frames left out\n", counted(short_ones, "clip"));
   return out;
 }
 
 int compare_sets(const CompareArgs& args) {
+  check_output("--csv", args.csv, table_output, inputs_of(args.generated, args.real));
   const std::vector<motion::Motion> generated = load(args.generated, args.rate, args.clips);
   require(!generated.empty(), "no generated clip has at least two frames; nothing to compare");
   // Speeds depend on the rate, so both sets are resampled to that of the generated one.

@@ -2,6 +2,7 @@
 #include "evaluate/evaluate_completion.hpp"
 
 #include "shared/signals.hpp"
+#include "train/training_size.hpp"
 
 namespace motiongan::command {
 
@@ -55,8 +56,9 @@ int evaluate_completion(CompletionArgs args, const CLI::App& verb) {
   const Context context;
   if (!trained.empty()) print_fact("device", describe(context.device()));
   if (!args.evaluate_only && !trained.empty()) {
-    print_fact("saved to", args.save);
+    if (!args.dry_run) print_fact("saved to", args.save);
     if (!train_completion_models(context, data, args, verb)) return 128 + caught_signal();
+    if (args.dry_run) return 0;
   }
   report_completion(context, data, args);
   return 0;
@@ -115,6 +117,7 @@ const Verb evaluate_completion_verb{
           ->default_str(listed(known_models()));
       verb->add_option("--save", a.save, "folder of the trained models and of the tables")->type_name("DIR");
       verb->add_flag("--evaluate-only", a.evaluate_only, "train nothing; evaluate the existing models");
+      add_dry_run(*verb, a.dry_run);
       verb->add_option("--samples", a.samples, "completions that dvgan generates for each test")
           ->capture_default_str()
           ->check(CLI::Range(1, 65535));

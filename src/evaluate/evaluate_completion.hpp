@@ -12,7 +12,7 @@ struct CompletionArgs {
   std::string folder, layout = "auto", save;
   std::vector<std::string> actions, train_actions;
   std::vector<std::string> models{"zero", "lstm", "seq2seq", "erd", "lstm-3lr", "dvgan"};
-  bool evaluate_only = false;
+  bool evaluate_only = false, dry_run = false;
 
   TrainingBudget predictors{0, 10'000}, dvgan{0, 2'000};
   double minutes = 0;

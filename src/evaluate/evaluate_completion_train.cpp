@@ -1,9 +1,9 @@
 // motiongan evaluate completion: training the models of the table.
 #include "evaluate/evaluate_completion.hpp"
-#include "motiongan/train/dvgan_trainer.hpp"
 #include "motiongan/train/prediction_trainer.hpp"
 #include "shared/signals.hpp"
 #include "train/run_start.hpp"
+#include "train/training.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -62,8 +62,12 @@ bool train_dvgan(const Context& context, const CompletionData& data, const Compl
   options.completion_share = args.completion_share;
   options.seed = args.seed;
   if (options.critic.critic == CriticKind::cnn) levels_of(args.dvgan_frames);
-  Dvgan model(context, windows.format,
-              {.generator = GeneratorKind::rnn, .hidden = args.dvgan_hidden, .seed = args.seed});
+  const DvganOptions network{.generator = GeneratorKind::rnn, .hidden = args.dvgan_hidden, .seed = args.seed};
+  const std::string lower =
+      concat("--dvgan-batch (now ", args.dvgan_batch, ") or --dvgan-hidden (now ", args.dvgan_hidden, ")");
+  if (only_sized(context, options, lower, args.dry_run, args.dvgan.iterations, builder(windows, network)))
+    return true;
+  Dvgan model(context, windows.format, network);
   DvganTrainer trainer(model, windows, options);
   return train_within(
       trainer, [&](const fs::path& path) { windows.write_split(path); },
@@ -80,10 +84,20 @@ bool train_predictor(const Context& context, const CompletionData& data, const C
   options.prefix = CompletionProtocol::prefix;
   options.future = CompletionProtocol::future;
   options.seed = args.seed;
-  PredictionModel model(
-      context, {data.dof(), data.classes().size()},
-      {.predictor = enum_from<Predictor>(kind, "--models"), .hidden = args.hidden, .seed = args.seed});
+  const PredictionFormat format{data.dof(), data.classes().size()};
+  const PredictionOptions network{
+      .predictor = enum_from<Predictor>(kind, "--models"), .hidden = args.hidden, .seed = args.seed};
   const PredictionData sequences = prediction_data(data);
+  const auto build = [&](const Context& in, const PredictionTrainOptions& trial, const TrainerUse& use) {
+    PredictionModel model(in, format, network);
+    PredictionTrainer trainer(model, sequences, trial);
+    use(trainer);
+  };
+  const std::size_t width = args.hidden > 0 ? args.hidden : usual_hidden(network.predictor);
+  if (only_sized(context, options, size_options(args.batch, width), args.dry_run, args.predictors.iterations,
+                 build))
+    return true;
+  PredictionModel model(context, format, network);
   PredictionTrainer trainer(model, sequences, options);
   return train_within(
       trainer, [&](const fs::path& path) { sequences.write_split(path); },
@@ -117,7 +131,10 @@ bool train_completion_models(const Context& context, const CompletionData& data,
         continue;
       }
     }
-    make_folder(folder);
+    if (args.dry_run)
+      fmt::print("{}\n", model);
+    else
+      make_folder(folder);
     const bool ended = unless_diverged(model, [&] {
       return dvgan ? train_dvgan(context, data, args, folder)
                    : train_predictor(context, data, args, folder, model);

@@ -5,6 +5,7 @@
 #include "evaluate/evaluate_model.hpp"
 #include "motiongan/formats/tab_lines.hpp"
 #include "motiongan/formats/text_file.hpp"
+#include "shared/outputs.hpp"
 #include "shared/prompt.hpp"
 #include "train/ranking.hpp"
 #include "train/run_start.hpp"
@@ -22,8 +23,8 @@ std::optional<std::size_t> trained_on(const fs::path& folder, const motion::Data
   const fs::path split = RunFiles{folder}.split();
   if (!fs::is_regular_file(split)) return std::nullopt;
   std::set<std::string> trained;
-  motion::for_each_tab_line(motion::read_text(split, "list of clips"), split.string(),
-                            "train or test <TAB> clip id", [&](const motion::TabLine& line) {
+  motion::for_each_tab_line(motion::read_text(split, "list of clips", motion::largest_list_file),
+                            split.string(), "train or test <TAB> clip id", [&](const motion::TabLine& line) {
                               if (line.before == "train") trained.emplace(line.after);
                             });
   std::size_t count = 0;
@@ -60,6 +61,7 @@ void warn_of_data(const motion::Dataset& data, const Dvgan& model, const fs::pat
 
 int run_evaluation(EvaluateModelArgs args, const CLI::App& verb) {
   const fs::path file = model_file(args.model), ranked_by = ranker_file(args.ranker);
+  check_output("--json", args.json, json_output, {file, ranked_by, args.folder, args.data.captions});
   const fs::path checkpoint = RunFiles{file.parent_path()}.checkpoint();
   const Context context;
   const Dvgan model = Dvgan::load(context, file);

@@ -9,6 +9,7 @@
 #include "motiongan/motion/root_joint.hpp"
 #include "motiongan/motion/skeleton_match.hpp"
 #include "shared/clip_reading.hpp"
+#include "shared/outputs.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -31,7 +32,7 @@ NamedMotions load(const fs::path& where, double rate, const motion::ClipOptions&
   for_each_clip(where, options,
                 [&](const fs::path& file, const std::string& id, motion::LoadedMotion&& loaded) {
                   motion::Motion motion = std::move(loaded.motion);
-                  if (rate > 0) motion = motion::resample(motion, rate);
+                  if (rate > 0) motion = motion::resample(motion, rate, file.string());
                   if (!out.empty())
                     motion::require_same_joints(out.begin()->second.skeleton, motion.skeleton, file.string());
                   motion.frames < 4 ? void(++short_ones) : void(out.emplace(id, std::move(motion)));
@@ -80,6 +81,7 @@ Pairs compare_pairs(const NamedMotions& generated, const NamedMotions& real) {
 }
 
 int evaluate_motion(const EvaluateMotionArgs& args) {
+  check_output("--json", args.json, json_output, {args.generated, args.real});
   const NamedMotions generated = load(args.generated, args.rate, args.clips);
   // Speeds and jerk depend on the rate, so both sets are resampled to that of the generated one.
   const double rate = args.rate > 0 ? args.rate : generated.begin()->second.rate;

@@ -2,6 +2,7 @@
 #include "motiongan/experiments/paper_tables.hpp"
 #include "motiongan/experiments/ranker_evaluation.hpp"
 #include "motiongan/formats/text_file.hpp"
+#include "shared/outputs.hpp"
 #include "train/ranking.hpp"
 #include "train/run_start.hpp"
 
@@ -97,6 +98,7 @@ void write_json(const RankerEvaluation& e, const Ranker& ranker, const fs::path&
 
 int run_evaluation(EvaluateRankerArgs args, const CLI::App& verb) {
   const fs::path file = ranker_file(args.ranker), checkpoint = RunFiles{file.parent_path()}.checkpoint();
+  check_output("--json", args.json, json_output, {file, args.folder, args.data.captions});
   const Context context;
   const Ranker ranker = Ranker::load(context, file);
   take_captioned_data(args, verb, checkpoint, file);

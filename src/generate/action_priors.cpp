@@ -26,7 +26,7 @@ SourceClip source_of(motion::Motion motion, const std::string& id, const motion:
   const int root = motion.skeleton.find(format.skeleton().joints.front().name);
   scale_to_model(motion, format.skeleton(), "the clip " + id);
   SourceClip out{clip_for(motion, format, id), {}};
-  out.motion = fold_into_root(motion::resample(motion, format.rate), root);
+  out.motion = fold_into_root(motion::resample(motion, format.rate, id), root);
   return out;
 }
 
@@ -76,7 +76,7 @@ std::vector<SplitLine> pool_of(std::vector<SplitLine> lines, const std::string& 
 
 std::vector<SplitLine> read_split(const fs::path& file) {
   std::vector<SplitLine> out;
-  std::string text = motion::read_text(file, "split of a run");
+  std::string text = motion::read_text(file, "split of a run", motion::largest_list_file);
   for (std::size_t at = 0, number = 1; at < text.size(); ++number) {
     const std::string line = text.substr(at, text.find('\n', at) - at);
     at += line.size() + 1;

@@ -7,6 +7,7 @@
 #include "generate/action_priors.hpp"
 #include "motiongan/data/clip_source.hpp"
 #include "shared/action_files.hpp"
+#include "shared/outputs.hpp"
 #include "shared/prompt.hpp"
 
 namespace motiongan::command {
@@ -57,17 +58,39 @@ void follow_split(motion::ActionDataset& data, const fs::path& split, bool other
   require(!data.train.empty(), "the model was trained on none of these clips (", split.string(), ")");
 }
 
+constexpr const char* labels_head = "# clip id\tlabel; synthetic clips\n";
+
+/// The name of the synthetic clip for the clip `id`, without extension.
+std::string synthetic_name(std::string id) {
+  std::replace(id.begin(), id.end(), '/', '-');
+  return id + "_synthetic";
+}
+
+/// The clips' folder would get their labels replaced, and synthetic clips among those it is read for.
+void check_augment_outputs(const AugmentArgs& args, const motion::ActionDataset& data) {
+  const std::vector<fs::path> inputs{args.data.folder, args.data.options.labels,
+                                     args.data.options.clips.bones};
+  if (args.study) check_output("--csv", args.studied.csv, table_output, inputs);
+  if (args.out.empty()) return;
+  const fs::path out = args.out;
+  check_output_folder("--out", out, inputs);
+  check_own_list(out / "labels.tsv", labels_head);
+  std::vector<fs::path> files{out / "labels.tsv"};
+  if (args.format != "bvh") files.push_back(out / motion::bone_list_name);
+  for (const motion::ActionClip& clip : data.train)
+    files.push_back(out / (synthetic_name(clip.id) + "." + args.format));
+  check_outputs("--out", files, inputs);
+}
+
 /// Writes the clips, and labels.tsv to train on them.
 void write_clips(const AugmentArgs& args, const ActionGan& model, const std::vector<SyntheticClip>& clips) {
   const fs::path out = args.out;
   make_folder(out);
   std::vector<std::string> names;
-  std::string labels = "# clip id\tlabel; synthetic clips\n";
+  std::string labels = labels_head;
   for (const SyntheticClip& s : clips) {
-    std::string name = s.clip.id + "_synthetic";
-    std::replace(name.begin(), name.end(), '/', '-');
-    labels += name + "\t" + model.format().classes[s.label] + "\n";
-    names.push_back(std::move(name));
+    names.push_back(synthetic_name(s.clip.id));
+    labels += names.back() + "\t" + model.format().classes[s.label] + "\n";
   }
   motion::in_two_threads(clips.size(), [&](std::size_t i) {
     const motion::PositionClip& clip = clips[i].clip;
@@ -90,6 +113,7 @@ int augment(AugmentArgs args, const CLI::App& verb) {
   const fs::path run = fs::is_directory(args.model) ? fs::path(args.model) : file.parent_path();
   take_data_of_run(args.data, verb, run, "give the folder of clips and their labels");
   fill_in_choices(args.data);
+  check_augment_outputs(args, {});
   motion::ActionDatasetOptions& options = args.data.options;
   options.frames = format.frames;
   options.rate = format.rate;
@@ -98,6 +122,7 @@ int augment(AugmentArgs args, const CLI::App& verb) {
   motion::ActionDataset data = load_data(args.data);
   follow_split(data, RunFiles{run}.split(), gives_split(verb));
   print_data(data, args.data);
+  check_augment_outputs(args, data);
   const std::vector<SyntheticClip> clips = synthesise(model, data, data.train, args.seed);
   if (!args.out.empty()) write_clips(args, model, clips);
   return args.study ? run_study(args.studied, model, data, clips) : 0;

@@ -73,7 +73,7 @@ int run_study(const StudyArgs& args, const ActionGan& model, const motion::Actio
   ProgressBar bar(total, {.label = "step"});
   bar.start(total);
   options.report = [&](std::size_t step, double loss) { bar.update(step, {{"loss", loss}}); };
-  options.should_stop = [] { return caught_signal() != 0; };
+  options.should_stop = [] { return stop_requested(); };
   catch_signals();
   const std::vector<AugmentationStudyRow> rows =
       study_augmentation(model.context(), data, as_clips_of(data, model, synthetic), options);

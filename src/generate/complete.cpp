@@ -7,6 +7,7 @@
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "shared/clip_reading.hpp"
+#include "shared/outputs.hpp"
 #include "shared/prompt.hpp"
 #include "shared/show.hpp"
 #include "shared/signals.hpp"
@@ -51,7 +52,8 @@ Prior read_prior(const CompleteArgs& args, const motion::MotionFormat& format) {
   require(from < in_file, "--from ", args.from, " is frame ", from, " of ", args.prior, ", which has ",
           in_file, " frames at ", brief(whole.rate), " per second (",
           duration(static_cast<double>(in_file) / whole.rate), ")");
-  const motion::Motion rest = motion::resample(slice(whole, from - posed, in_file - from), format.rate);
+  const motion::Motion rest =
+      motion::resample(slice(whole, from - posed, in_file - from), format.rate, args.prior);
   require(rest.frames >= args.seed_frames, "the prior ", args.prior, " has ",
           counted(in_file - from, "frame"), " from frame ", from, " on, ",
           duration(static_cast<double>(in_file - from) / whole.rate), " at ", brief(whole.rate),
@@ -145,19 +147,23 @@ view::ViewedMotion viewed(const std::string& title, const motion::Motion& motion
 int complete(const CompleteArgs& args) {
   check_text(args.text);
   check_samples(args.first_sample, args.count);
-  const fs::path file = model_file(args.model);
+  const fs::path file = model_file(args.model), out = args.out;
+  const std::string clip = fs::path(args.prior).stem().string();
+  const std::vector<fs::path> files =
+      sample_files(out, clip + "_" + slug(args.text), args.first_sample, args.count);
+  const std::vector<fs::path> inputs{file, args.prior, args.clips.bones};
+  check_output("--html", args.html, page_output, inputs);
+  check_output("--png", args.png, picture_output, inputs);
+  check_outputs("--out", files, inputs);
   const Context context;
   const Dvgan model = Dvgan::load(context, file);
   model.rnn();  // throws Error if there is no RNN generator
   const motion::MotionFormat& format = model.format();
   const Prior prior = read_prior(args, format);
   warn_of_unknown_words(format.vocabulary, args.text);
-  const fs::path out = args.out;
   make_folder(out);
-
-  const std::string clip = fs::path(args.prior).stem().string();
   const bool shows = !args.html.empty() || !args.png.empty();
-  StreamJob job{.files = sample_files(out, clip + "_" + slug(args.text), args.first_sample, args.count),
+  StreamJob job{.files = files,
                 .before = prior.seed,
                 .frames = args.frames,
                 .rate = args.rate,

@@ -5,6 +5,7 @@
 #include "motiongan/models/action_gan.hpp"
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/motion/motion.hpp"
+#include "shared/outputs.hpp"
 #include "shared/prompt.hpp"
 #include "shared/show.hpp"
 #include "shared/signals.hpp"
@@ -119,6 +120,12 @@ int generate(const GenerateArgs& args, const fs::path& file) {
 /// Generates with either kind of model. Throws Error for options of the other kind.
 int generate_either(const GenerateArgs& args, ActionGenerateArgs actions, const CLI::App& verb) {
   const fs::path file = model_file(args.model);
+  std::vector<fs::path> inputs = inputs_of(actions.from, {args.prompts, actions.data});
+  inputs.push_back(file);
+  check_output("--html", args.html, page_output, inputs);
+  check_output("--png", args.png, picture_output, inputs);
+  check_output("--drift", args.drift, table_output, inputs);
+  check_output("--attention-map", actions.attention_map, picture_output, inputs);
   if (!holds_model<ActionGan>(io::SafeTensors::read(file))) {
     const std::string wrong = given_action_options(verb);
     require(wrong.empty(), file.string(), " generates motion for a text: it has no classes, and takes no ",

@@ -6,6 +6,7 @@
 #include "motiongan/sample/action_generate.hpp"
 #include "motiongan/view/heat_map.hpp"
 #include "shared/action_files.hpp"
+#include "shared/outputs.hpp"
 #include "shared/prompt.hpp"
 #include "shared/show.hpp"
 
@@ -24,12 +25,15 @@ double asked_seconds(const ActionGenerateArgs& args, double rate) {
   return timed ? 0 : 10;
 }
 
+/// The priors; `inputs` are the files, or the folder, that they were read from.
 std::vector<GivenPrior> find_priors(const ActionGenerateArgs& args, const CLI::App& verb,
-                                    const fs::path& file, const ActionGan& model, std::size_t label) {
+                                    const fs::path& file, const ActionGan& model, std::size_t label,
+                                    std::vector<fs::path>& inputs) {
   ActionDataArgs data;
   data.folder = args.data;
   data.options.clips = args.clips;
   const motion::PositionFormat& format = model.format();
+  inputs = inputs_of(args.from, {args.clips.bones.string()});
   if (!args.from.empty()) {
     fill_in_choices(data);
     require(args.data.empty(), "give --from or --data, not both");
@@ -52,6 +56,7 @@ std::vector<GivenPrior> find_priors(const ActionGenerateArgs& args, const CLI::A
       "give the second to continue with --from CLIP, or the clips to draw one from with --data FOLDER");
   if (!args.data.empty()) data.folder = args.data, data.procedural = 0;
   fill_in_choices(data);
+  inputs.push_back(data.folder);
   return draw_priors(run, format, data, label, args.seed, args.first_sample, args.count);
 }
 
@@ -150,15 +155,16 @@ int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const
   if (!args.attention_map.empty())
     require(!model.is_baseline() && model.options().attention,
             "--attention-map: this model has no attention");
-  const std::vector<GivenPrior> priors = find_priors(args, verb, file, model, first_label);
+  std::vector<fs::path> files, inputs;
+  const std::vector<GivenPrior> priors = find_priors(args, verb, file, model, first_label, inputs);
   const fs::path out = args.out;
-  make_folder(out);
-  if (args.format != "bvh") write_bones_beside(out, priors.front().prior.skeleton);
-
   const std::string name = name_of(format, schedule);
-  std::vector<fs::path> files;
   for (std::size_t i = 0; i < priors.size(); ++i)
     files.push_back(out / fmt::format("{}_{:03}.{}", name, args.first_sample + i, args.format));
+  check_outputs("--out", files, inputs);
+  if (args.format != "bvh") check_outputs("--out", {out / motion::bone_list_name}, inputs);
+  make_folder(out);
+  if (args.format != "bvh") write_bones_beside(out, priors.front().prior.skeleton);
   const bool shows = !args.html.empty() || !args.png.empty();
   std::vector<view::ViewedMotion> shown;
   for (std::size_t first = 0; first < priors.size(); first += characters_at_a_time) {

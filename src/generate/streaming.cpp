@@ -60,7 +60,7 @@ bool write_some(const Dvgan& model, const StreamJob& job, std::size_t first, std
     growing.back().kept = slice(job.before, 0, std::min(job.kept, job.before.frames));
   }
   for (std::size_t at = 0; at < job.frames; at += at_a_time) {
-    if (caught_signal() != 0) return false;
+    if (stop_requested()) return false;
     const std::size_t frames = std::min(at_a_time, job.frames - at);
     stream.step(frames);
     for (Growing& g : growing) {

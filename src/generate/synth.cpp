@@ -3,6 +3,7 @@
 #include "motiongan/formats/text_file.hpp"
 #include "motiongan/procedural/procedural.hpp"
 #include "shared/command.hpp"
+#include "shared/outputs.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -15,8 +16,9 @@ struct SynthArgs {
 int synthesise(const SynthArgs& args) {
   const fs::path folder = args.folder;
   require(args.options.clips > 0, "--clips is 0, expected at least 1");
-  make_folder(folder);
   std::string captions = "# clip id <TAB> description; a clip may have several lines\n";
+  check_own_list(folder / "captions.tsv", captions);
+  make_folder(folder);
   std::size_t lines = 0;
   for (std::size_t i = 0; i < args.options.clips; ++i) {
     const motion::LabelledMotion clip = motion::procedural_motion(i, args.options);
@@ -47,8 +49,12 @@ const Verb synth_verb{
       verb->add_option("--clips", args->options.clips, "number of clips, cycling through the actions")
           ->check(not_negative())
           ->capture_default_str();
-      verb->add_option("--seconds", args->options.seconds, "length of each clip")->capture_default_str();
-      verb->add_option("--rate", args->options.rate, "frames per second")->capture_default_str();
+      verb->add_option("--seconds", args->options.seconds, "length of each clip")
+          ->check(positive())
+          ->capture_default_str();
+      verb->add_option("--rate", args->options.rate, "frames per second")
+          ->check(positive())
+          ->capture_default_str();
       verb->add_option("--seed", args->options.seed, "random seed; another one gives other performers")
           ->check(not_negative())
           ->capture_default_str();

@@ -7,6 +7,7 @@
 #include "motiongan/motion/root_joint.hpp"
 #include "motiongan/train/csv_log.hpp"
 #include "shared/clip_reading.hpp"
+#include "shared/outputs.hpp"
 #include "shared/write_png.hpp"
 
 namespace motiongan::command {
@@ -128,6 +129,7 @@ void print_log(const fs::path& file, const std::string& png) {
 int info(const InfoArgs& args) {
   const fs::path path = args.path;
   require(fs::exists(path), path.string(), " does not exist");
+  check_output("--png", args.png, picture_output, {path, args.captions});
   const std::string extension = motion::extension_of(path);
   if (fs::is_directory(path)) {
     if (fs::exists(path / "checkpoint.safetensors"))

@@ -11,6 +11,7 @@
 #include "motiongan/search/ranking.hpp"
 #include "shared/caption_report.hpp"
 #include "shared/clip_reading.hpp"
+#include "shared/outputs.hpp"
 #include "shared/prompt.hpp"
 #include "shared/show.hpp"
 
@@ -205,10 +206,19 @@ void show_results(const Found& found, const SearchArgs& args, const motion::Moti
             1 + found.results.front().hit.nearest.size());
 }
 
+void check_search_outputs(const SearchArgs& args, const fs::path& model) {
+  const std::vector<fs::path> inputs{model, args.collection, args.captions, args.clips.bones};
+  check_output("--html", args.html, page_output, inputs);
+  if (args.json != "-") check_output("--json", args.json, json_output, inputs);
+  if (!args.out.empty())
+    check_outputs("--out", sample_files(args.out, slug(args.text), 0, args.hypotheses), inputs);
+}
+
 int search(const SearchArgs& args) {
   check_text(args.text);
   check_samples(0, args.hypotheses);
   const fs::path file = model_file(args.model);
+  check_search_outputs(args, file);
   require(!holds_model<ActionGan>(io::SafeTensors::read(file)), file.string(),
           " generates motion for classes; a search needs a text-conditioned model (motiongan train dvgan)");
   const Context context;

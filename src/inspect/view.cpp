@@ -2,6 +2,8 @@
 #include "motiongan/io/safetensors.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "shared/clip_reading.hpp"
+#include "shared/outputs.hpp"
+#include "shared/shell.hpp"
 #include "shared/show.hpp"
 
 namespace motiongan::command {
@@ -15,15 +17,18 @@ struct ViewArgs {
 };
 
 int view_clips(ViewArgs args) {
+  const std::vector<fs::path> inputs = inputs_of(args.files, {args.clips.bones.string()});
+  check_output("--html", args.html, page_output, inputs);
+  check_output("--png", args.png, picture_output, inputs);
   std::vector<view::ViewedMotion> motions;
   for (const std::string& given : args.files) {
     require(motion::extension_of(given) != ".safetensors", given,
-            " is a model; generate motion with it first: ", program(), " generate ", given,
+            " is a model; generate motion with it first: ", program(), " generate ", shell_word(given),
             " --text TEXT (or --class NAME) --html page.html");
     for_each_clip(
         given, args.clips, [&](const fs::path& file, const std::string&, motion::LoadedMotion&& loaded) {
           motion::Motion motion = std::move(loaded.motion);
-          if (args.rate > 0) motion = motion::resample(motion, args.rate);
+          if (args.rate > 0) motion = motion::resample(motion, args.rate, file.string());
           fmt::print("{}: {} at {} per second, {}\n", file.string(), counted(motion.frames, "frame"),
                      brief(motion.rate), duration(static_cast<double>(motion.frames) / motion.rate));
           motions.push_back({file.stem().string(), std::move(motion)});

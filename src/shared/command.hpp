@@ -2,6 +2,8 @@
 #pragma once
 #include <fmt/format.h>
 
+#include "shared/numbers.hpp"
+// Must follow numbers.hpp, which says how it reads numbers.
 #include <CLI/CLI.hpp>
 #include <cstddef>
 #include <cstdlib>
@@ -17,6 +19,9 @@
 namespace motiongan::command {
 
 namespace fs = std::filesystem;
+
+/// Exit statuses besides 0 and, after a signal, 128 + its number. CLI11's are 100 and above.
+inline constexpr int exit_failure = 1, exit_diverged = 3;
 
 /// What main() runs after parsing the command line. Returns the exit status.
 using Job = std::function<int()>;
@@ -93,7 +98,7 @@ inline void print_fact(std::string_view name, std::string_view text) {
   fmt::print("  {:<11} {}\n", name, text);
 }
 
-/// Accept numbers of at least 0, and above 0. CLI11 itself would wrap a negative integer around.
+/// Accept numbers of at least 0, and above 0.
 CLI::Validator not_negative();
 CLI::Validator positive();
 

@@ -22,6 +22,15 @@ class Help : public CLI::Formatter {
   }
 };
 
+/// What CLI11 says when it could not convert the value of an option, "Could not convert: --batch = 2.5", with
+/// what was expected instead.
+CLI::ParseError explained(const CLI::ConversionError& error) {
+  const std::string_view text = error.what(), start = "Could not convert: ";
+  if (refused_number().empty() || !text.starts_with(start)) return error;
+  const std::string_view name = text.substr(start.size(), text.find(" = ") - start.size());
+  return CLI::ValidationError(std::string(name), refused_number());
+}
+
 }  // namespace
 
 CommandLine::CommandLine(std::ostream& out, std::ostream& err) : out_(out), err_(err), app_(description) {
@@ -57,6 +66,8 @@ std::optional<int> CommandLine::parse(std::vector<std::string> arguments) {
   std::reverse(arguments.begin(), arguments.end());  // CLI11 takes them from the back
   try {
     app_.parse(std::move(arguments));
+  } catch (const CLI::ConversionError& error) {
+    return app_.exit(explained(error), out_, err_);
   } catch (const CLI::ParseError& error) {
     return app_.exit(error, out_, err_);
   }

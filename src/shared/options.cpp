@@ -51,12 +51,11 @@ struct AddOption {
   std::string with_no() const { return name + ",!--no-" + name.substr(2); }
   template <class T>
   CLI::Option* number(T& member) const {
-    Range range = field.info.range;
-    if constexpr (std::is_same_v<T, std::size_t>)
-      if (!range.limits()) range = Range::at_least(0);
-    CLI::Option* option = verb.add_option(name, member, field.info.help)->capture_default_str();
-    if (range.limits()) option->check(in_range(range));
-    return option;
+    constexpr bool whole = std::is_same_v<T, std::size_t>;
+    const Range& range = field.info.range;
+    return verb.add_option(name, member, field.info.help)
+        ->capture_default_str()
+        ->check(in_range(whole && !range.limits() ? Range::at_least(0) : range, whole));
   }
 };
 
@@ -71,13 +70,14 @@ bool contains(const std::vector<std::string_view>& list, std::string_view name) 
 
 }  // namespace
 
-CLI::Validator in_range(const Range& range) {
-  return {[range](std::string& text) {
-            char* end = nullptr;
-            const double value = std::strtod(text.c_str(), &end);
-            const bool number = !text.empty() && *end == '\0';
-            if (!number) return concat("expected a number, ", range.text(), ", not ", text);
-            return range.contains(value) ? std::string() : concat("expected ", range.text(), ", not ", text);
+CLI::Validator in_range(const Range& range, bool whole) {
+  return {[range, whole](std::string& text) {
+            const std::optional<double> value = finite_number(text);
+            const std::string limits = range.limits() ? range.text() : "";
+            if (value && !range.contains(*value)) return concat("expected ", limits, ", not ", text);
+            if (value && (!whole || whole_number(text))) return std::string();
+            return concat("expected ", expected_number(text, whole), limits.empty() ? "" : ", ", limits,
+                          ", not ", text.empty() ? "nothing" : text);
           },
           ""};
 }

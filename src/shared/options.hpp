@@ -17,8 +17,8 @@ struct OptionFilter {
 void add_options(CLI::App& verb, const FieldList& fields, const std::string& group,
                  const OptionFilter& filter);
 
-/// Rejects numbers outside the range. CLI11 itself would wrap a negative integer around.
-CLI::Validator in_range(const Range& range);
+/// Rejects numbers outside the range and, if `whole`, those with a fraction.
+CLI::Validator in_range(const Range& range, bool whole = false);
 
 /// The fields as the text of a note: a JSON object whose keys are option names.
 std::string note_of(const FieldList& fields);

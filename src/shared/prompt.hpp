@@ -28,7 +28,8 @@ inline void check_text(const std::string& text) {
 /// The texts of a file, one per line; blank lines and lines that start with # are skipped. Throws Error as
 /// `file:line: ...` for a text without words or that is not UTF-8, and if there is none.
 inline std::vector<std::string> read_prompts(const fs::path& file) {
-  const std::string name = file.string(), all = motion::read_text(file, "prompt file");
+  const std::string name = file.string(),
+                    all = motion::read_text(file, "prompt file", motion::largest_list_file);
   std::vector<std::string> texts;
   motion::for_each_line(all, name, [&](const motion::TextLine& line) {
     require(motion::is_utf8(line.raw), name, ":", line.number,
@@ -56,13 +57,15 @@ inline std::string slug(const std::string& text) {
 }
 
 inline void warn_of_unknown_words(const motion::Vocabulary& vocabulary, const std::string& text) {
+  if (const std::string note = motion::word_limit_note(text); !note.empty())
+    fmt::print(stderr, "motiongan: a text {}\n", note);
   const std::vector<std::string> words = vocabulary.unknown_words(text);
   if (words.empty()) return;
   std::string list;
   for (const std::string& word : words) list += (list.empty() ? "\"" : ", \"") + word + "\"";
   fmt::print(stderr, "motiongan: \"{}\": the model never saw {}{}\n", text, list,
-             words.size() == motion::split_words(text).size() ? "; it knows no word of this text"
-                                                              : "; treated as unknown");
+             words.size() == motion::used_words(text).size() ? "; it knows no word of this text"
+                                                             : "; treated as unknown");
 }
 
 /// NAME_000.bvh and so on, for samples `first` to `first` + `count` - 1.

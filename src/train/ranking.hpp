@@ -2,6 +2,7 @@
 #pragma once
 #include "motiongan/train/ranker_trainer.hpp"
 #include "shared/captioned_data.hpp"
+#include "train/training_size.hpp"
 
 namespace motiongan::command {
 
@@ -25,6 +26,15 @@ inline void fill_in_choices(RankerArgs& a) {
     levels_of(a.data.frames);
   else
     require(a.data.frames >= 2, "--frames is ", a.data.frames, ", expected at least 2");
+}
+
+/// Builds a ranker and its trainer, for training_cost(). Refers to the data.
+inline auto builder(const motion::Dataset& data, const RankerOptions& options) {
+  return [&data, options](const Context& context, const RankerTrainOptions& training, const TrainerUse& use) {
+    Ranker ranker(context, data.format, options);
+    RankerTrainer trainer(ranker, data, training);
+    use(trainer);
+  };
 }
 
 /// The ranker file `given`, or the one in the run folder `given`.

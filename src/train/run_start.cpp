@@ -1,6 +1,7 @@
 #include "train/run_start.hpp"
 
 #include "motiongan/train/progress.hpp"
+#include "shared/shell.hpp"
 #include "shared/signals.hpp"
 
 namespace motiongan::command {
@@ -8,6 +9,7 @@ namespace motiongan::command {
 void add_run_options(CLI::App& verb, RunArgs& args, const std::string& save_default) {
   verb.add_option("--save", args.save, "folder of the run [" + save_default + "]")->type_name("DIR");
   verb.add_flag("--resume", args.resume, "continue the run in --save with its original options");
+  add_dry_run(verb, args.dry_run);
   add_options(verb, fields_of(args.run), "Run");
 }
 
@@ -38,8 +40,9 @@ RunStart begin_run(const RunArgs& args, const fs::path& save, bool has_data, con
   require(has_data || args.resume,
           "there is nothing to train on: give a folder of BVH clips, or --procedural");
   require(has_data || !args.save.empty(), "--resume needs --save DIR, the folder of the run");
-  RunStart start{args.save.empty() ? save : fs::path(args.save), 0};
+  RunStart start{args.save.empty() ? save : fs::path(args.save), 0, nullptr};
   const RunFiles files{start.folder};
+  if (fs::is_directory(start.folder)) start.lock = std::make_shared<const io::FolderLock>(start.folder);
   if (!args.resume) {
     require(!fs::exists(files.checkpoint()), start.folder.string(),
             " already holds a run; continue it with --resume, or choose another --save");
@@ -79,7 +82,9 @@ RunResult run_shown(Trainer& trainer, const std::function<void(const fs::path&)>
   run.save_dir = start.folder;
   run.resume = args.resume;
   run.notes = {{"options", note}};
-  run.should_stop = [] { return caught_signal() != 0; };
+  run.lock = start.lock;
+  run.interrupted = [] { return stop_requested(); };
+  run.warn = [&](const std::string& text) { bar.note("warning: " + text); };
   run.report = [&](std::size_t iteration, std::span<const NamedLoss> losses) {
     std::vector<NamedValue> values;
     for (const auto& [name, short_name] : shown_losses)
@@ -87,12 +92,20 @@ RunResult run_shown(Trainer& trainer, const std::function<void(const fs::path&)>
     bar.update(iteration, values);
   };
   catch_signals();
-  const RunResult result = run_training(trainer, write_split, run);
+  const std::string again =
+      fmt::format("continue: {} {} --resume --save {}", program(), verb, shell_word(start.folder.string()));
+  const RunResult result = [&] {
+    try {
+      return run_training(trainer, write_split, run);
+    } catch (const DeviceError& error) {
+      if (!fs::exists(RunFiles{start.folder}.checkpoint())) throw;
+      throw DeviceError(error.what(), "\n", again);
+    }
+  }();
   bar.finish();
   fmt::print("{} after {} of {} iterations; saved in {}\n", result.stopped ? "stopped" : "finished",
              result.iterations, trainer.iterations(), start.folder.string());
-  if (result.stopped)
-    fmt::print("continue: {} {} --resume --save {}\n", program(), verb, start.folder.string());
+  if (result.stopped) fmt::print("{}\n", again);
   return result;
 }
 

@@ -2,17 +2,19 @@
 #pragma once
 #include "motiongan/train/run.hpp"
 #include "shared/options.hpp"
+#include "train/training_size.hpp"
 
 namespace motiongan::command {
 
 /// Options common to all training verbs.
 struct RunArgs {
   std::string save;
-  bool resume = false;
+  bool resume = false, dry_run = false;
   RunOptions run;
 };
 
-/// Adds --save, --resume, --minutes, --save-every and --log-every. `save_default` is the default in --help.
+/// Adds --save, --resume, --dry-run, --minutes, --save-every and --log-every. `save_default` is the default
+/// in --help.
 void add_run_options(CLI::App& verb, RunArgs& args, const std::string& save_default);
 
 /// The options stored in a checkpoint, as take_note() reads them; empty if there is no checkpoint or it has
@@ -27,7 +29,8 @@ void require_one_source(const CLI::App& verb);
 
 struct RunStart {
   fs::path folder;
-  std::size_t done = 0;  ///< iterations
+  std::size_t done = 0;                        ///< iterations
+  std::shared_ptr<const io::FolderLock> lock;  ///< of the folder, if it is there already
 };
 
 /// Finds the folder of the run (--save, or else `save`) and, if it is resumed, calls `take(note, checkpoint)`

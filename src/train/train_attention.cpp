@@ -1,7 +1,7 @@
 // motiongan train attention: trains a model that continues a second of motion on labelled clips.
-#include "motiongan/train/attention_trainer.hpp"
-#include "motiongan/train/baseline_trainer.hpp"
 #include "shared/action_data.hpp"
+#include "shared/shell.hpp"
+#include "train/action_training.hpp"
 #include "train/run_start.hpp"
 
 namespace motiongan::command {
@@ -47,12 +47,7 @@ RunResult train_either(ActionGan& model, const motion::ActionDataset& data, Atte
     fmt::print("{} iterations, batch {}{}\n", t.iterations, t.batch, resuming);
     fmt::print("Ctrl-C saves and stops. error: MSE of the {} generated frames, normalised\n",
                model.format().frames);
-    BaselineTrainer trainer(model, data,
-                            {.iterations = t.iterations,
-                             .batch = t.batch,
-                             .balanced = t.balanced,
-                             .adam = t.adam,
-                             .seed = t.seed});
+    BaselineTrainer trainer(model, data, AblationVariant::baseline_training(t));
     return run_shown(trainer, write_split, args.run, start, note, {{"error", "error"}}, "train attention");
   }
   fmt::print("{} iterations of {} critic steps, a classifier step and {}, batch {}{}\n", t.iterations,
@@ -88,11 +83,14 @@ int train_attention(AttentionArgs args, const CLI::App& verb) {
   args.model.seed = args.training.seed;
   if (args.model.generator == ActionGenerator::lstm) check_baseline(args, verb);
   if (is_done(start, args.run, args.training.iterations)) return 0;
-  make_folder(start.folder);
+  if (!args.run.dry_run) make_folder(start.folder);
 
   const Context context;
   const motion::ActionDataset data = load_data(args.data);
   print_data(data, args.data);
+  if (only_sized(context, data, args.model, args.training, args.run.dry_run,
+                 args.training.iterations - start.done))
+    return 0;
   ActionGan model(context, data.format, args.model);
   const double millions = 1e-6 * static_cast<double>(parameter_count(named_parameters(model)));
   print_fact("generator",
@@ -105,8 +103,8 @@ int train_attention(AttentionArgs args, const CLI::App& verb) {
   print_fact("device", describe(context.device()));
   print_saved_to(start.folder, args.run.run.save_every_minutes);
   train_either(model, data, args, start);
-  fmt::print("generate: {} generate {} --class '{}' --seconds 10\n", program(), start.folder.string(),
-             data.format.classes.front());
+  fmt::print("generate: {} generate {} --class {} --seconds 10\n", program(),
+             shell_word(start.folder.string()), shell_quoted(data.format.classes.front()));
   return exit_status();
 }
 

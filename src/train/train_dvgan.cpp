@@ -1,4 +1,5 @@
 // motiongan train dvgan: trains a text-to-motion model on captioned clips.
+#include "shared/shell.hpp"
 #include "train/training.hpp"
 
 namespace motiongan::command {
@@ -17,11 +18,14 @@ int train_dvgan(TrainDvganArgs args, const CLI::App& verb) {
                                    });
   fill_in_choices(args);
   if (is_done(start, args.run, args.training.iterations)) return 0;
-  make_folder(start.folder);
+  if (!args.run.dry_run) make_folder(start.folder);
 
   const Context context;
   const motion::Dataset data = load_data(args);
   print_data(data, args);
+  if (only_sized(context, args.training, size_options(args.training.batch, args.model.hidden),
+                 args.run.dry_run, args.training.iterations - start.done, builder(data, args.model)))
+    return 0;
   Dvgan model(context, data.format, args.model);
   print_model(model);
   print_saved_to(start.folder, args.run.run.save_every_minutes);
@@ -34,8 +38,8 @@ int train_dvgan(TrainDvganArgs args, const CLI::App& verb) {
   run_shown(
       trainer, [&](const fs::path& path) { data.write_split(path); }, args.run, start,
       note_of(fields_of(kept)), {{"wasserstein", "wasserstein"}, {"penalty", "penalty"}}, "train dvgan");
-  fmt::print("generate: {} generate {} --text \"{}\"\n", program(), start.folder.string(),
-             data.train.front().captions.front());
+  fmt::print("generate: {} generate {} --text {}\n", program(), shell_word(start.folder.string()),
+             shell_quoted(data.train.front().captions.front()));
   return exit_status();
 }
 

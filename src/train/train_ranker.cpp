@@ -1,4 +1,5 @@
 // motiongan train ranker: trains a ranker, which scores how well a description fits a motion.
+#include "shared/shell.hpp"
 #include "train/ranking.hpp"
 #include "train/run_start.hpp"
 
@@ -19,7 +20,7 @@ int train_ranker(TrainRankerArgs args, const CLI::App& verb) {
                                    });
   fill_in_choices(args);
   if (is_done(start, args.run, args.training.iterations)) return 0;
-  make_folder(start.folder);
+  if (!args.run.dry_run) make_folder(start.folder);
 
   const Context context;
   const motion::Dataset data = load_data(args);
@@ -28,6 +29,9 @@ int train_ranker(TrainRankerArgs args, const CLI::App& verb) {
   print_fact("choices", fmt::format("{} of the training clips, {} per step (more if its clips have more)",
                                     counted(descriptions.size(), "distinct description"),
                                     std::min(args.training.descriptions, descriptions.size())));
+  if (only_sized(context, args.training, size_options(args.training.batch, args.model.hidden),
+                 args.run.dry_run, args.training.iterations - start.done, builder(data, args.model)))
+    return 0;
   Ranker ranker(context, data.format, args.model);
   const double millions = 1e-6 * static_cast<double>(parameter_count(named_parameters(ranker)));
   print_fact("ranker", fmt::format("{}, {} million parameters (width {})",
@@ -43,7 +47,7 @@ int train_ranker(TrainRankerArgs args, const CLI::App& verb) {
   run_shown(
       trainer, [&](const fs::path& path) { data.write_split(path); }, args.run, start,
       note_of(fields_of(kept)), {{"loss", "loss"}, {"recall1", "R@1"}}, "train ranker");
-  fmt::print("evaluate: {} evaluate ranker {}\n", program(), start.folder.string());
+  fmt::print("evaluate: {} evaluate ranker {}\n", program(), shell_word(start.folder.string()));
   return exit_status();
 }
 

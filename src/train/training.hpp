@@ -22,6 +22,15 @@ struct DvganArgs : CaptionedDataArgs {
 /// networks.
 void fill_in_choices(DvganArgs& args);
 
+/// Builds a DVGAN and its trainer, for training_cost(). Refers to the data.
+inline auto builder(const motion::Dataset& data, const DvganOptions& options) {
+  return [&data, options](const Context& context, const DvganTrainOptions& training, const TrainerUse& use) {
+    Dvgan model(context, data.format, options);
+    DvganTrainer trainer(model, data, training);
+    use(trainer);
+  };
+}
+
 void print_model(Dvgan& model);
 
 }  // namespace motiongan::command

@@ -83,6 +83,8 @@ std::size_t iterations_of(const TrainingBudget& budget, std::size_t steps) {
 bool train_within(Trainer& trainer, const std::function<void(const fs::path&)>& write_split, RunOptions run,
                   const TrainingBudget& budget, const std::string& name) {
   const RunFiles files{run.save_dir};
+  make_folder(run.save_dir);
+  run.lock = std::make_shared<const io::FolderLock>(run.save_dir);
   std::size_t done = 0;
   double minutes = 0;
   run.resume = fs::exists(files.checkpoint());
@@ -101,7 +103,8 @@ bool train_within(Trainer& trainer, const std::function<void(const fs::path&)>& 
     if (budget.minutes > 0) run.max_minutes = budget.minutes - minutes;
     run.save_every_minutes = budget.save_every_minutes;
     run.log_every = budget.log_every;
-    run.should_stop = [] { return caught_signal() != 0; };
+    run.interrupted = [] { return stop_requested(); };
+    run.warn = [&](const std::string& text) { bar.note("warning: " + text); };
     run.report = [&](std::size_t iteration, std::span<const NamedLoss> losses) {
       std::vector<NamedValue> values;
       for (const NamedLoss& loss : losses) values.emplace_back(loss.name, loss.value);

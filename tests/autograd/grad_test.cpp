@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "../support/check_grads.hpp"
+#include "../support/messages.hpp"
 
 using namespace motiongan;
 using testing::double_context;
@@ -90,10 +91,42 @@ TEST_CASE("an unused input has a zero gradient") {
   const std::vector<Var> g = grad(square(x), {x, unused});
   check_near(host(g[0]), {2, 4});
   CHECK(host(g[1]) == std::vector<double>{0, 0, 0});
-  // One newer than the output, and one that is detached.
-  const Var y = square(x), later = square(leaf({1, 2}));
+  const Var y = square(x), later = square(leaf({1, 2}));  // newer than the output
   CHECK(host(grad(y, {later})[0]) == std::vector<double>{0, 0});
-  CHECK(host(grad(constant({3}), {x})[0]) == std::vector<double>{0, 0});
+}
+
+TEST_CASE("no gradient of a constant") {
+  const Var x = leaf({1, 2});
+  const auto message = [&](const Var& output) {
+    return testing::message_of([&] { grad({square(x), output}, {Var(), Var()}, {x}); });
+  };
+  Var unrecorded;
+  {
+    const NoGrad scope;
+    unrecorded = square(x);
+  }
+  for (const Var& output : {constant({3}), square(constant({3, 4})), square(x).detach(), unrecorded}) {
+    CHECK(
+        testing::says(message(output), concat("grad: output 1 of shape ", output.shape(), " is a constant")));
+    CHECK(testing::says(message(output), "compute it from a Var::leaf outside of NoGrad"));
+    CHECK_THROWS_AS(grad(output, {x}), Error);
+  }
+  CHECK_THROWS_AS(grad(Var(), {x}), Error);
+}
+
+TEST_CASE("derivatives of a polynomial past its degree are zero") {
+  const Var x = leaf({2, -1}), other = leaf({5});
+  std::vector<std::vector<double>> orders;
+  Var d = 3 * square(x);
+  for (int order = 1; order <= 4; ++order) {
+    d = grad(d, {x}, {.create_graph = true})[0];
+    orders.push_back(host(d));
+  }
+  CHECK(orders == std::vector<std::vector<double>>{{12, -6}, {6, 6}, {0, 0}, {0, 0}});
+  // A penalty on the slope of a linear function.
+  const Var slope = grad(2 * x, {x}, {.create_graph = true})[0];
+  CHECK(host(grad(sum(square(slope - 1)), {x})[0]) == std::vector<double>{0, 0});
+  CHECK(host(grad(grad(x * x, {other}, {.create_graph = true})[0], {other})[0]) == std::vector<double>{0});
 }
 
 TEST_CASE("outputs and intermediate values can be inputs") {

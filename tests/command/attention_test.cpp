@@ -110,6 +110,10 @@ TEST_CASE("training on classes: every loss is told, and a resumed run ends bit-e
               .has("jump_000 from 0 s on"));
     refused("generate whole --class walk --from clips/walk_000.bvh --at 3.9", "8 frames (0.80 s) are needed");
     refused("generate whole --class walk --from clips/walk_000.bvh --count 2", "this model has no noise");
+    const std::string own = bytes_of("clips/walk_000.bvh");
+    refused("generate whole --class walk --from clips/walk_000.bvh --out clips",
+            "clips/walk_000.bvh is an input and would be replaced");
+    CHECK(bytes_of("clips/walk_000.bvh") == own);
     refused("generate whole --class walk --from clips/captions.tsv", "is this a BVH file?");
     write_file("other.bvh",
                "HIERARCHY\nROOT Pelvis\n{\n OFFSET 0 0 0\n CHANNELS 3 Zrotation Xrotation Yrotation\n End "
@@ -143,6 +147,11 @@ TEST_CASE("training on classes: every loss is told, and a resumed run ends bit-e
     const Said again = call("train attention twice --save again --iterations 1" + small);
     CHECK_MESSAGE(again.status == 0, again.text);
     CHECK(again.has("from twice/labels.tsv"));
+    refused("augment again --out twice", "--out twice is an input; choose another folder");
+    CHECK(lines_of("twice/labels.tsv") == 7);
+    fs::create_directory("mine");
+    write_file("mine/labels.tsv", "walk_000\twalk\n");
+    refused("augment whole --out mine", "mine/labels.tsv exists, was not written by this command");
     refused("augment whole", "give --out DIR");
     refused("augment nowhere --out x", "nowhere");
   }

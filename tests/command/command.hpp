@@ -39,6 +39,9 @@ class TestFolder {
   fs::path before_, path_;
 };
 
+/// The command in a shell's background: a shell starts such processes with SIGINT ignored.
+inline const std::string in_background = std::string("env --default-signal=INT '") + MOTIONGAN_COMMAND + "' ";
+
 /// Runs `command` in a shell.
 inline Said shell(const std::string& command) {
   Said out;

@@ -71,6 +71,7 @@ TEST_CASE("search, with a model of two iterations") {
       CHECK(said.status == 1);
       CHECK_MESSAGE(said.has(why), said.text);
     };
+    refused("--model run --text walk --collection clips --out clips", "clips/walk_000.bvh is an input");
     fs::create_directories("none");
     refused("--model run --text walk --collection none", "have no .bvh, .amc");
     refused("--model run --text walk --collection absent", "absent does not exist");

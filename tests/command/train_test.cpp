@@ -52,6 +52,26 @@ TEST_CASE("a run that is stopped and resumed ends bit-equal to one that was not"
   }
 }
 
+TEST_CASE("the suggested command can be pasted into a shell, and long captions are cut") {
+  const TestFolder folder;
+  REQUIRE(call("synth clips --clips 2 --seconds 5").status == 0);
+  std::string captions;
+  for (const char* id : {"walk_000", "run_001"}) captions += std::string(id) + "\tshe \"goes\" `on` $5\n";
+  write_file("clips/captions.tsv", captions);
+  const Said said = call("train dvgan clips --save 'my run' --iterations 1" + tiny);
+  CHECK_MESSAGE(said.status == 0, said.text);
+  CHECK_MESSAGE(said.has("generate \"my run\" --text 'she \"goes\" `on` $5'"), said.text);
+  std::string line = "walk_000\tshe goes";
+  for (int i = 0; i < 300; ++i) line += " on";
+  write_file("clips/captions.tsv", line + "\nrun_001\tgoes\n");
+  const Said cut = call("train dvgan clips --save cut --iterations 1" + tiny);
+  CHECK_MESSAGE(cut.status == 0, cut.text);
+  CHECK_MESSAGE(cut.has("'walk_000': its caption has 302 words, of which the first 256 are used"), cut.text);
+  const std::string longer = line.substr(line.find('\t') + 1);
+  CHECK(call("generate cut --text '" + longer + "'")
+            .has("a text has 302 words, of which the first 256 are used"));
+}
+
 TEST_CASE("the recurrent networks: any number of frames, stopped and resumed") {
   const TestFolder folder;
   const std::string train =
@@ -75,7 +95,7 @@ TEST_CASE("the recurrent networks: any number of frames, stopped and resumed") {
 TEST_CASE("Ctrl-C saves and says how to go on; a killed run resumes from its last checkpoint") {
   const TestFolder folder;
   const std::string train = "train dvgan --procedural 6 --log-every 1" + tiny;
-  const std::string start = std::string("'") + MOTIONGAN_COMMAND + "' " + train;
+  const std::string start = in_background + train;
   // Runs until some rows of the log are there, then gets the signal.
   const auto interrupt = [&](const std::string& save, const std::string& more, const std::string& signal) {
     return shell(start + " --save " + save + more + " & pid=$!; for i in $(seq 600); do " + "[ $(cat " +

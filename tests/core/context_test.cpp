@@ -1,36 +1,13 @@
 // Context: buffer pool, memory limit, environment variables, errors.
 #include <doctest/doctest.h>
 
-#include <cstdlib>
 #include <motiongan/ops/elementwise.hpp>
 
 #include "../support/messages.hpp"
+#include "../support/setting.hpp"
 
 using namespace motiongan;
 using namespace motiongan::testing;
-
-namespace {
-
-/// Sets an environment variable for its lifetime.
-class Setting {
- public:
-  Setting(const char* name, const char* value) : name_(name) {
-    if (const char* before = std::getenv(name)) before_ = before;
-    setenv(name, value, 1);
-  }
-  ~Setting() {
-    if (before_)
-      setenv(name_, before_->c_str(), 1);
-    else
-      unsetenv(name_);
-  }
-
- private:
-  const char* name_;
-  std::optional<std::string> before_;
-};
-
-}  // namespace
 
 TEST_CASE("a released buffer is reused") {
   const Context context;
@@ -88,10 +65,11 @@ TEST_CASE("the memory limit holds, and the error states request, use and limit")
 
 TEST_CASE("one allocation larger than the device allows") {
   const Context context({.memory_limit = std::size_t{1} << 60});
-  const std::size_t too_many = context.device().max_allocation / 4 + 1024;
-  const std::string text = message_of([&] { Tensor(context, {too_many}); });
-  CHECK(says(text, "out of device memory: one buffer of"));
-  CHECK(says(text, "in one allocation"));
+  for (const std::size_t bytes : {context.device().max_allocation + 4096, ~cl_ulong{0}}) {
+    const std::string text = message_of([&] { context.allocate(bytes); });
+    CHECK(says(text, "out of device memory: one buffer of"));
+    CHECK(says(text, "in one allocation"));
+  }
 }
 
 TEST_CASE("MOTIONGAN_MEMORY_MB") {
@@ -160,6 +138,11 @@ TEST_CASE("errors of launches name kernel, file, sizes and shapes") {
                               KernelReal{0});
              }),
              "kernel fill: 8589934592 does not fit 32 bits"));
+  CHECK(says(message_of([&] {
+               context.launch("elementwise", "fill", LaunchGrid::items(std::size_t{1} << 32), x,
+                              std::size_t{15}, KernelReal{0});
+             }),
+             "kernel fill: 4294967296 work-items do not fit 32 bits"));
 
   // The context still works after the errors.
   CHECK(affine(Var::constant(x), 2).value().to_host() == std::vector<float>(15, 2));
@@ -183,4 +166,26 @@ TEST_CASE("statistics count launches, reads and writes") {
   CHECK(now.reads == 0);
   CHECK(y.value().to_host() == std::vector<float>{3, 6});
   CHECK(now.reads == 1);
+}
+
+TEST_CASE("the host memory kept for uploads has a limit, and uploads arrive whole") {
+  const Context context;
+  const auto& now = context.statistics();
+  const std::size_t million = 1'000'000;
+  std::vector<Tensor> tensors;
+  for (int i = 0; i < 20; ++i) {  // 80 MB
+    tensors.push_back(Tensor::from(context, {million}, std::vector<float>(million, static_cast<float>(i))));
+    CHECK(now.bytes_staged <= detail::Staging::limit);
+  }
+  CHECK(now.bytes_staged > detail::Staging::limit / 2);
+  for (std::size_t i = 0; i < tensors.size(); ++i) {
+    const std::vector<float> values = tensors[i].to_host();
+    CHECK(std::all_of(values.begin(), values.end(), [&](float v) { return v == static_cast<float>(i); }));
+  }
+  const std::size_t before = now.bytes_staged, many = detail::Staging::limit / 4 + 1;
+  const Tensor large = Tensor::from(context, {many}, std::vector<float>(many, 3));  // not kept at all
+  CHECK(now.bytes_staged == before);
+  CHECK(large.to_host() == std::vector<float>(many, 3));
+  for (int i = 0; i < 200; ++i) Tensor::from(context, {10}, std::vector<float>(10, 1));
+  CHECK(now.bytes_staged < 64 * 1024);  // small uploads replace the large ones' memory
 }

@@ -90,6 +90,49 @@ TEST_CASE("no device at all: the message says what to install") {
   }
 }
 
+TEST_CASE("a default skips what cannot be used; a wish does not") {
+  std::vector<Device> some = four;
+  some[1].available = false;
+  CHECK(chosen("", some) == "GeForce RTX 4090");
+  CHECK(chosen("gpu", some) == "GeForce RTX 3060");
+  CHECK(says(why_unusable(some[1]), "CL_DEVICE_AVAILABLE"));
+  some[2].has_compiler = false;
+  CHECK(chosen("", some) == "pthread-epyc");
+  some[0].version = "OpenCL 1.1 of old";
+  CHECK(chosen("", some) == "Odd: 7");
+  some[3].c_version = "OpenCL C 1.0";
+  CHECK(chosen("", some) == "pthread-epyc");  // none: a Context says why
+}
+
+TEST_CASE("OpenCL 1.2 is needed") {
+  for (const char* version : {"OpenCL 1.2", "OpenCL 2.0 AMD", "OpenCL 3.0 PoCL", "OpenCL 10.0", "", "odd"}) {
+    CAPTURE(version);
+    Device device = four[0];
+    device.version = version;
+    CHECK(why_unusable(device).empty());
+  }
+  for (const char* version : {"OpenCL 1.1 CUDA", "OpenCL 1.0", "OpenCL 0.9"}) {
+    Device device = four[0];
+    device.version = version;
+    CHECK(says(why_unusable(device), version));
+  }
+}
+
+TEST_CASE("errors tell what failed while looking for devices") {
+  const DeviceSurvey survey{{four[0]}, {"Broken: no device"}};
+  const auto text = [](const DeviceSurvey& found, const char* wish) {
+    try {
+      choose_device(found, wish);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  CHECK(says(text(survey, "gpu"), "looking for others:\n  Broken: no device"));
+  CHECK(says(text({{}, survey.problems}, ""), "What was found:\n  Broken: no device"));
+  CHECK(says(text({{four[0]}, {}}, "gpu"), "cpu  pthread-epyc"));
+}
+
 TEST_CASE("the devices of this machine have a name, memory and a vector width") {
   const std::vector<Device> here = all_devices();
   REQUIRE_FALSE(here.empty());

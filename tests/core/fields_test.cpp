@@ -87,7 +87,9 @@ TEST_CASE("what does not fit is refused by the member's name") {
   CHECK(says(read(options, R"({"steps": -1})"), "\"steps\" is -1"));
   CHECK(says(read(options, R"({"steps": 1.5})"), "\"steps\" is 1.5"));
   CHECK(says(read(options, R"({"shift": 1})"), "expected true or false"));
-  CHECK(says(read(options, R"({"weight": "a"})"), "expected a number"));
+  CHECK(says(read(options, R"({"weight": "a"})"), "expected a finite number"));
+  CHECK(says(read(options, R"({"weight": 1e999})"), "expected a JSON object"));  // JSON has no infinity
+  CHECK(says(read(options, R"({"steps": 18446744073709551616})"), "expected a whole number of at least 0"));
   CHECK(says(read(options, R"({"list": ["a", 1]})"), "expected a list of"));
   CHECK(says(read(options, R"({"schedule": [[1]]})"), "expected pairs"));
   CHECK(says(read(options, "[1]"), "expected a JSON object"));
@@ -104,6 +106,9 @@ TEST_CASE("ranges, choices and numbers that are none") {
   CHECK(check([](auto& o) { o.taps = 4; }) == "taps is 4, expected 3 or 5");
   CHECK(check([](auto& o) { o.weight = 1.5; }) == "weight is 1.5, expected 0 to 1");
   CHECK(says(check([](auto& o) { o.weight = std::nan(""); }), "weight is nan"));
+  CHECK(check([](auto& o) {
+          o.schedule = {{5, std::nan("")}};
+        }) == "schedule from 5 on is nan, expected a finite number");
 }
 
 TEST_CASE("options on the command line are called by their keys, unless they say otherwise") {

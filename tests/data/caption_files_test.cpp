@@ -1,5 +1,6 @@
 // Caption files as people write them: CSV, JSON, one text file for each clip, and their encodings.
 #include <doctest/doctest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -197,4 +198,23 @@ TEST_CASE("text files beside the clips, in texts/ in their folder or beside it")
   CHECK(match.of_clip[4] == std::vector<Caption>{{"a walk"}});
   CHECK(match.report.without == Texts{"a/run", "kick"});
   CHECK(match.report.unmatched.empty());
+}
+
+TEST_CASE("pipes and links that lead to themselves are no captions, and are named") {
+  const Folder folder;
+  fs::create_symlink("loop.txt", folder.path / "loop.txt");
+  REQUIRE(mkfifo((folder.path / "pipe.txt").c_str(), 0600) == 0);
+  const auto beside = [&](const std::string& name) {
+    const std::vector<fs::path> files{folder.path / (name + ".bvh")};
+    read_captions_beside(files, std::vector<ClipName>{{name, name, name}});
+  };
+  CHECK_THROWS_WITH_AS(beside("loop"), doctest::Contains("loop.txt cannot be reached"), Error);
+  CHECK_THROWS_WITH_AS(beside("pipe"), doctest::Contains("pipe.txt is a named pipe"), Error);
+  CHECK_THROWS_WITH_AS(read_caption_file(folder.path / "pipe.txt"), doctest::Contains("is a named pipe"),
+                       Error);
+  CHECK_NOTHROW(beside("other"));
+  folder.write("huge.json", "");
+  fs::resize_file(folder.path / "huge.json", largest_list_file + 1);  // sparse
+  CHECK_THROWS_WITH_AS(read_caption_file(folder.path / "huge.json"),
+                       doctest::Contains("huge.json has 268435457 bytes, expected at most 268435456"), Error);
 }

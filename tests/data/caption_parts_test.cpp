@@ -118,6 +118,13 @@ TEST_CASE("a captioned part becomes a clip of its own") {
   }
 }
 
+TEST_CASE("times of a caption are finite, or nan for the clip's own") {
+  CHECK(caption_detail::caption_of_line("a#x#nan#nan", "f:1").text == "a");
+  for (const char* line : {"a#x#inf#nan", "a#x#0#inf", "a#x#1#infinity", "a#x#-inf#2"})
+    CHECK_THROWS_WITH_AS(caption_detail::caption_of_line(line, "f:1"),
+                         doctest::Contains("f:1: found the times"), Error);
+}
+
 TEST_CASE("a caption file takes precedence over text files; times count from the start of the file") {
   const Folder folder;
   Clip clip = to_clip(walk(6, 60, 1), "x");

@@ -36,6 +36,32 @@ TEST_CASE("a vocabulary is sorted, starts with <unk>, and does not depend on the
   CHECK_THROWS_AS(Vocabulary({"<unk>", ""}), Error);
 }
 
+TEST_CASE("only the first words of a very long caption are used") {
+  std::string caption = "first";
+  for (std::size_t i = 1; i < most_caption_words; ++i) caption += " word";
+  const std::vector<std::string> captions{caption, caption + " unused" + caption};
+  const Vocabulary v = Vocabulary::from_captions(captions);
+  CHECK(v.words() == std::vector<std::string>{"<unk>", "first", "word"});
+  CHECK(v.encode(captions[0]).size() == 256);
+  CHECK(v.encode(captions[1]) == v.encode(captions[0]));
+  CHECK(v.unknown_words(captions[1]).empty());
+  CHECK(word_limit_note(captions[0]).empty());
+  CHECK(word_limit_note(captions[1]) == "has 512 words, of which the first 256 are used");
+  std::string letters;  // as many words in as few bytes
+  for (std::size_t i = 0; i < 257; ++i) letters += "a ";
+  CHECK(word_limit_note(letters) == "has 257 words, of which the first 256 are used");
+}
+
+TEST_CASE("a caption has a longest line") {
+  const std::string fits(longest_line - 3, 'a'), longer(longest_line - 1, 'a');
+  CHECK(parse_captions("w\t" + fits, "c.tsv").at("w").size() == 1);
+  CHECK_THROWS_WITH_AS(parse_captions("w\twalks\nw\t" + longer, "c.tsv"),
+                       doctest::Contains("c.tsv:2: found a line of 65537 bytes, expected at most 65536"),
+                       Error);
+  CHECK_THROWS_WITH_AS(parse_caption_csv("w," + longer + "aa", "c.csv"),
+                       doctest::Contains("c.csv:1: clip 'w' has a description of 65537 bytes"), Error);
+}
+
 TEST_CASE("caption files") {
   const Captions c = parse_captions(
       "\xEF\xBB\xBF# clip\tdescription\r\n01_01\tforward jumps, turn around\r\n\r\n  \n 01_02 \t climb \tup\n"

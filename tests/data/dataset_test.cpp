@@ -132,6 +132,12 @@ TEST_CASE("captions become sentences of the training vocabulary") {
   motions[1].captions = {"..."};
   CHECK_THROWS_WITH_AS(Dataset::from_motions(motions, eight_at(4)),
                        doctest::Contains("'clip1' has the caption '...'"), Error);
+  motions[1].captions = {"walk"};
+  CHECK(Dataset::from_motions(motions, eight_at(4)).notes.empty());
+  for (int i = 0; i < 300; ++i) motions[1].captions[0] += " on";
+  const Dataset cut = Dataset::from_motions(motions, eight_at(4));
+  CHECK(cut.notes ==
+        std::vector<std::string>{"clip 'clip1': its caption has 301 words, of which the first 256 are used"});
   motions[1].captions = {};
   CHECK(Dataset::from_motions(motions, eight_at(4)).named == 1);
 }

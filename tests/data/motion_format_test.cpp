@@ -126,6 +126,7 @@ TEST_CASE("errors in the JSON name the member") {
       {"rate", nullptr, "'rate' is null"},
       {"frames", -4, "'frames' is number, expected a whole number"},
       {"frames", 0, "windows of 0 frames"},
+      {"frames", std::uint64_t{1} << 40, "windows of 1099511627776 frames, expected 1 to 65536"},
       {"mean", nlohmann::json::array({1, 2}), "2 means and 12 standard deviations"},
       {"std", nlohmann::json::array({"a"}), "'std' is array, expected numbers"},
       {"std", std::vector<double>(12, 0.0), "nothing moves"},

@@ -118,6 +118,10 @@ TEST_CASE("inconsistent members are errors") {
   broken([](PositionFormat& f) { f.classes[0].clear(); }, "empty");
   broken([](PositionFormat& f) { f.rate = 0; }, "rate");
   broken([](PositionFormat& f) { f.frames = 0; }, "0 frames");
+  broken([](PositionFormat& f) { f.frames = std::size_t{1} << 40; },
+         "windows of 1099511627776 frames, expected 1 to 65536");
+  broken([](PositionFormat& f) { f.classes.resize(70000, "x"); },
+         "has 70000 classes, expected at most 65536");
   broken([](PositionFormat& f) { f.layout = PositionLayout(f.skeleton(), false); }, "normalizer");
   broken([](PositionFormat& f) { f.layout = {}; }, "skeleton");
 }

@@ -2,6 +2,7 @@
 #include "motiongan/formats/clip_files.hpp"
 
 #include <doctest/doctest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "../support/messages.hpp"
+#include "motiongan/formats/read_motion.hpp"
 
 using namespace motiongan;
 using namespace motiongan::motion;
@@ -75,4 +77,42 @@ TEST_CASE("a folder without clips, and paths that lead nowhere") {
   CHECK(says(error(folder.path / "link"), "link is a dead link (to /nowhere/clips); give a .bvh file"));
   fs::create_symlink("loop", folder.path / "loop");
   CHECK(says(error(folder.path / "loop"), "loop cannot be reached: "));
+}
+
+TEST_CASE("only regular files are read: pipes, devices, folders and loops are told apart") {
+  const Folder folder;
+  const auto error = [&](const fs::path& path) { return message_of([&] { read_text(path, "BVH file"); }); };
+  REQUIRE(mkfifo((folder.path / "pipe.bvh").c_str(), 0600) == 0);
+  fs::create_symlink("pipe.bvh", folder.path / "link.bvh");
+  fs::create_symlink("loop.bvh", folder.path / "loop.bvh");
+  fs::create_symlink("gone.bvh", folder.path / "dead.bvh");
+  CHECK(says(error(folder.path / "pipe.bvh"), "pipe.bvh is a named pipe, expected a regular file"));
+  CHECK(says(error(folder.path / "link.bvh"), "link.bvh is a named pipe, expected a regular file"));
+  CHECK(says(error(folder.path / "loop.bvh"), "BVH file " + folder.path.string() + "/loop.bvh cannot be"));
+  CHECK(says(error(folder.path / "dead.bvh"), "dead.bvh is a dead link (to gone.bvh)"));
+  CHECK(says(error(folder.path / "none.bvh"), "none.bvh does not exist"));
+  CHECK(says(error(folder.path), "is a folder, expected a BVH file"));
+  CHECK(says(error("/dev/zero"), "/dev/zero is a device, expected a regular file"));
+}
+
+TEST_CASE("a folder with pipes is searched without waiting for them") {
+  const Folder folder;
+  for (const char* name : {"a.bvh", "b.csv", "c.npz", "d.npy"})
+    REQUIRE(mkfifo((folder.path / name).c_str(), 0600) == 0);
+  const std::vector<fs::path> found = find_motion_files(folder.path);  // a .csv is opened to tell what it is
+  REQUIRE(found.size() == 3);
+  for (const fs::path& file : found)
+    CHECK(says(message_of([&] { read_motion(file); }), "is a named pipe, expected a regular file"));
+}
+
+TEST_CASE("a file too large for its kind is refused before it is read") {
+  const Folder folder;
+  folder.write("huge.bvh");
+  fs::resize_file(folder.path / "huge.bvh", largest_text_file + 1);  // sparse
+  CHECK(says(message_of([&] { read_text(folder.path / "huge.bvh", "BVH file"); }),
+             "huge.bvh has 4294967297 bytes, expected at most 4294967296"));
+  folder.write("small.txt", "12345");
+  CHECK(read_text(folder.path / "small.txt", "text file", 5) == "12345");
+  CHECK(says(message_of([&] { read_text(folder.path / "small.txt", "text file", 4); }),
+             "small.txt has 5 bytes, expected at most 4"));
 }

@@ -140,3 +140,18 @@ TEST_CASE("the motion files of a folder") {
   CHECK_THROWS_WITH_AS(find_motion_files(folder.path / "none"), doctest::Contains("have no motion file"),
                        Error);
 }
+
+TEST_CASE("a frame time in another unit is refused by file, unless --fps corrects it") {
+  const Folder folder;
+  const fs::path file = folder.path / "slow.bvh";
+  Motion body = standing_body(80);
+  body.rate = 1 / 600000.0;
+  write_bvh(file, body);
+  for (const auto& read : {+[](const fs::path& path) { read_motion(path); },
+                           +[](const fs::path& path) { inspect_motion(path); }}) {
+    CHECK_THROWS_WITH_AS(read(file), doctest::Contains("slow.bvh: "), Error);
+    CHECK_THROWS_WITH_AS(read(file), doctest::Contains("frame time in another unit? --fps gives the rate"),
+                         Error);
+  }
+  CHECK(read_motion(file, {.fps = 30}).motion.rate == 30);
+}

@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -11,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "../support/folders.hpp"
 using motiongan::Error;
 using motiongan::io::SafeTensor;
 using motiongan::io::SafeTensors;
@@ -81,7 +83,7 @@ TEST_CASE("safetensors: what was written is read again, number for number") {
   std::uint64_t length = 0;
   std::memcpy(&length, bytes.data(), sizeof(length));
   CHECK(length % 8 == 0);
-  CHECK_FALSE(fs::exists(folder.path / "b.tmp"));
+  CHECK_FALSE(motiongan::testing::has_unfinished(folder.path));
 
   SafeTensors().write(folder.path / "empty");
   CHECK(SafeTensors::read(folder.path / "empty").tensors.empty());
@@ -225,6 +227,48 @@ TEST_CASE("safetensors: malformed files are refused, and the message says why") 
   CHECK(error_of(folder.path).find("it is not a regular file") != std::string::npos);
 }
 
+namespace {
+
+/// Seconds that reading `header` takes, and what it says.
+std::pair<double, std::string> read_in_time(const std::string& header, std::size_t data) {
+  const Folder folder;
+  put(folder.path / "costly.safetensors", file_of(header, data));
+  const auto start = std::chrono::steady_clock::now();
+  std::string message = error_of(folder.path / "costly.safetensors");
+  return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+          std::move(message)};
+}
+
+std::string repeated(const std::string& text, std::size_t count) {
+  std::string out;
+  for (std::size_t i = 0; i < count; ++i) out += text;
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("safetensors: a header cannot cost more than its bytes") {
+  const auto tensor = [](const std::string& shape) {
+    return R"({"a":{"dtype":"U8","shape":[)" + shape + R"(],"data_offsets":[0,1]}})";
+  };
+  CHECK(read_in_time(tensor(repeated("1,", 15) + "1"), 1).second == "no error");
+  // Time went with the square of the dimensions: 9 MB of them took many minutes.
+  const auto [seconds, message] = read_in_time(tensor(repeated("1,", 4'500'000) + "1"), 1);
+  CHECK(message.find("tensor \"a\": \"shape\" has more than 16 numbers, the most that are read") !=
+        std::string::npos);
+  CHECK(seconds < 5);
+
+  std::string many = "{", notes = R"({"__metadata__":{)";
+  for (std::size_t i = 0; i <= 100'000; ++i) {
+    const std::string name = (i > 0 ? ",\"t" : "\"t") + std::to_string(i) + "\":";
+    many += name + R"({"dtype":"U8","shape":[0],"data_offsets":[0,0]})";
+    notes += name + "\"\"";
+  }
+  CHECK(read_in_time(many + "}", 0).second.find("more than 100000 tensors") != std::string::npos);
+  CHECK(read_in_time(notes + "}}", 0).second.find("__metadata__ has more than 100000 members") !=
+        std::string::npos);
+}
+
 TEST_CASE("safetensors: every truncation of a file is refused") {
   Folder folder;
   SafeTensors out;
@@ -258,13 +302,13 @@ TEST_CASE("safetensors: a write that fails leaves the old file as it was") {
   bad.tensors["__metadata__"] = good.tensors["a"];
   CHECK_THROWS_AS(bad.write(folder.path / "model"), Error);
   CHECK(get(folder.path / "model") == before);
-  CHECK_FALSE(fs::exists(folder.path / "model.tmp"));
+  CHECK_FALSE(motiongan::testing::has_unfinished(folder.path));
 
   CHECK_THROWS_AS(good.write(folder.path / "no such folder" / "model"), Error);
   fs::create_directory(folder.path / "taken");
   put(folder.path / "taken" / "x", "x");
   CHECK_THROWS_AS(good.write(folder.path / "taken"), Error);
-  CHECK_FALSE(fs::exists(folder.path / "taken.tmp"));
+  CHECK_FALSE(motiongan::testing::has_unfinished(folder.path));
 }
 
 TEST_CASE("safetensors: every whole type is read with its sign") {

@@ -204,6 +204,24 @@ TEST_CASE("files without this model are refused, naming the file and the problem
              "\"decode.bias\" holds"));
 }
 
+TEST_CASE("options cannot claim a network or a window that the file has no numbers for") {
+  const auto with = [](const char* part, const std::string& from, const std::string& to) {
+    return refusal([&](io::SafeTensors& file) {
+      std::string& text = file.metadata.at(part);
+      const std::size_t at = text.find(from);
+      REQUIRE(at != std::string::npos);
+      text.replace(at, from.size(), to);
+    });
+  };
+  CHECK(with("options", "\"hidden\":16", "\"hidden\":16") == "no error");
+  // Gigabytes, which were allocated before the shapes were compared.
+  CHECK(says(with("options", "\"hidden\":16", "\"hidden\":65536"), "far more numbers than the file holds"));
+  CHECK(says(with("options", "\"hidden\":16", "\"hidden\":32"), "\" has shape "));
+  const std::string frames = "\"frames\":" + std::to_string(small_data().format.frames);
+  CHECK(says(with("format", frames, "\"frames\":1099511627776"),
+             "windows of 1099511627776 frames, expected 1 to 65536"));
+}
+
 TEST_CASE("a file truncated at any point is refused by name") {
   const auto path = scratch("short");
   for (const double share : {0.0, 0.001, 0.1, 0.9, 0.9999}) {

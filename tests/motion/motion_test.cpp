@@ -164,6 +164,15 @@ TEST_CASE("resampling: lengths, end points and interpolation") {
   CHECK_THROWS_AS(resample(slow, -5), Error);
   CHECK_THROWS_AS(resample(slow, std::nan("")), Error);
   CHECK_THROWS_AS(resample(slow, 1e300), Error);
+  // Only what becomes longer can be too long.
+  const std::size_t joints = slow.skeleton.size();
+  CHECK_THROWS_WITH_AS(
+      resample(turning(1000, 1e-6, 0.1), 30, "walk.bvh"),
+      doctest::Contains("walk.bvh: resampling 1000 frames from 1e-06 to 30 per second (1e+09 s) "
+                        "would make 3e+10 frames"),
+      Error);
+  CHECK(resampled_frames(100'000'000, 30, 15, joints, "long") == 50'000'000);
+  CHECK_THROWS_AS(resampled_frames(50'000'000, 30, 31, 2, "long"), Error);
 }
 
 TEST_CASE("slices") {

@@ -11,7 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "../support/folders.hpp"
+#include "../support/messages.hpp"
+
 using namespace motiongan;
+using namespace motiongan::testing;
 
 namespace {
 
@@ -161,7 +165,7 @@ TEST_CASE("a resumed log drops the rows that are computed again and an incomplet
     log.append(50, std::vector{5.0});
   }
   CHECK(read(path) == before);
-  CHECK_FALSE(std::filesystem::exists(folder.path / "log.csv.tmp"));
+  CHECK_FALSE(has_unfinished(folder.path));
   CsvLog(path, {"w"}, 0);
   CHECK(read(path) == "iteration,w\n");
 }
@@ -178,9 +182,40 @@ TEST_CASE("a log of another run is not changed") {
   CHECK_THROWS_WITH_AS(CsvLog(path, {"a", "b"}), doctest::Contains("1 rows of another run"), Error);
   CHECK(read(path) == before);
   std::ofstream(path, std::ios::app) << "2,x,3\n";
-  CHECK_THROWS_WITH_AS(CsvLog(path, {"a", "b"}, 1), doctest::Contains("log.csv:3"), Error);
   CHECK_THROWS_WITH_AS(read_csv_log(path), doctest::Contains("'x' is not a number"), Error);
   CHECK_THROWS_AS(CsvLog(folder.path / "no" / "log.csv", {"a"}), Error);
   CHECK_THROWS_AS(CsvLog(folder.path / "new.csv", {"a,b"}), Error);
   CHECK_THROWS_AS(read_csv_log(folder.path / "none.csv"), Error);
+}
+
+TEST_CASE("a damaged log is repaired to the last whole row, and that is said") {
+  const Folder folder;
+  const auto path = folder.path / "log.csv", damaged = folder.path / "log.damaged.csv";
+  std::vector<std::string> said;
+  const auto warn = [&](const std::string& text) { said.push_back(text); };
+  const auto resume = [&](std::uint64_t done) { return continued_log(path, {"w"}, done, damaged, warn); };
+  {
+    CsvLog log(path, {"w"});
+    for (std::uint64_t i = 1; i <= 3; ++i) log.append(i, std::vector{static_cast<double>(i)});
+  }
+  const std::string whole = read(path);
+  for (const std::string& tail :
+       {std::string(512, '\0'), std::string("x9&%,\n4,4\n"), std::string(9, '\0') + "\n4,4\n"}) {
+    std::ofstream(path, std::ios::app | std::ios::binary) << tail;
+    said.clear();
+    CHECK(resume(9)->last_iteration() == 3u);
+    CHECK(read(path) == whole);
+    if (tail.find('\n') == std::string::npos) continue;  // an unfinished row is nothing unusual
+    REQUIRE(said.size() == 1);
+    CHECK(says(said[0], "log.csv:5: "));
+    CHECK(says(said[0], "all after it are removed"));
+  }
+  said.clear();
+  std::ofstream(path, std::ios::binary) << std::string(30, '\0') << "\n1,1\n";
+  CHECK_FALSE(resume(2)->last_iteration());
+  CHECK(read(path) == "iteration,w\n");
+  CHECK(read(damaged).size() == 35);
+  REQUIRE(said.size() == 2);
+  CHECK(says(said[0], "is now " + damaged.string()));
+  CHECK(says(said[1], "no rows of iterations 1 to 2"));
 }

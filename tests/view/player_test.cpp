@@ -1,8 +1,10 @@
 #include "motiongan/view/player.hpp"
 
 #include <doctest/doctest.h>
+#include <sys/resource.h>
 
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -108,6 +110,30 @@ TEST_CASE("the page makes no network requests") {
     CHECK_MESSAGE(page.find(forbidden) == std::string::npos, forbidden);
 }
 
+TEST_CASE("every number of the page is finite, or the clip and frame are named") {
+  const auto numbers = [](const nlohmann::json& clip) {
+    bool finite = true;
+    for (const char* key : {"rate", "height", "floor", "heading", "scale"})
+      finite = finite && std::abs(clip[key].get<double>()) < 1e30;
+    for (const double x : clip["origin"]) finite = finite && std::abs(x) < 1e30;
+    return finite;
+  };
+  auto motions = std::vector{test::walker(5, 30, "far away")};
+  motions[0].motion.position(3, 1)[2] = 1e8;
+  CHECK(numbers(nlohmann::json::parse(data_text(view::player_page(motions)))["clips"][0]));
+  for (const double x : {1e308, -1e308, 1e11}) {
+    motions[0].motion.position(3, 1)[2] = x;
+    CHECK_THROWS_WITH_AS(view::player_page(motions), doctest::Contains("'far away' has a position of "),
+                         Error);
+    CHECK_THROWS_WITH_AS(view::player_page(motions), doctest::Contains("in frame 3, expected at most "),
+                         Error);
+  }
+  // A rate that no clip has: one frame is shown, not a stride that does not fit an integer.
+  const auto clip = nlohmann::json::parse(
+      data_text(view::player_page(std::vector{test::walker(10, 1e200, "quick")})))["clips"][0];
+  CHECK(clip["frames"] == 1);
+}
+
 TEST_CASE("sixteen clips of eight seconds stay small") {
   std::vector<view::ViewedMotion> motions(16, test::walker(480, 60));
   const double nodes = 9, bytes = 16 * 480 * nodes * 3 * 2 * 4 / 3;
@@ -131,6 +157,18 @@ TEST_CASE("a page is written whole or not at all") {
   CHECK(std::filesystem::file_size(folder / "page.html") == written.size());
   CHECK_THROWS_WITH_AS(view::write_player(folder / "no" / "page.html", motions),
                        doctest::Contains("page.html"), Error);
+  // A disk without space: files of at most 4096 bytes may be written.
+  rlimit before{};
+  REQUIRE(getrlimit(RLIMIT_FSIZE, &before) == 0);
+  const rlimit small{4096, before.rlim_max};
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  REQUIRE(setrlimit(RLIMIT_FSIZE, &small) == 0);
+  CHECK_THROWS_WITH_AS(view::write_player(folder / "page.html", motions),
+                       doctest::Contains("page.html.tmp: File too large; does the folder exist"), Error);
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  CHECK_FALSE(std::filesystem::exists(folder / "page.html.tmp"));
+  CHECK(std::filesystem::file_size(folder / "page.html") == written.size());
   CHECK_THROWS_AS(view::player_page({}), Error);
   CHECK_THROWS_AS(view::player_page(motions, {.max_rate = 0}), Error);
   std::filesystem::remove_all(folder);

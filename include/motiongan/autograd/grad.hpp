@@ -12,12 +12,25 @@ struct GradOptions {
   bool create_graph = false;  ///< record the backward pass, so that the gradients can be differentiated again
 };
 
+namespace detail {
+/// A gradient that does not depend on any variable, such as that of a linear function, as a leaf: it can be
+/// differentiated again, with zero as its derivative.
+inline Var differentiable(const Var& gradient) {
+  return recording() && !gradient.requires_grad() ? Var::leaf(gradient.value()) : gradient;
+}
+}  // namespace detail
+
 /// Gradients of sum_i <outputs[i], seeds[i]> with respect to each of `inputs`; zero for an input that no
 /// output depends on. Only branches that lead to `inputs` are computed. An empty seed means ones (outputs are
-/// usually scalars). Throws Error if an input is a constant or a seed's shape is not that of its output.
+/// usually scalars). Throws Error if an output or an input is a constant, an input is Frozen or a seed's
+/// shape is not that of its output.
 inline std::vector<Var> grad(const std::vector<Var>& outputs, const std::vector<Var>& seeds,
                              const std::vector<Var>& inputs, GradOptions options = {}) {
   require(outputs.size() == seeds.size(), "grad: ", outputs.size(), " outputs but ", seeds.size(), " seeds");
+  for (std::size_t i = 0; i < outputs.size(); ++i)
+    require(outputs[i].requires_grad(), "grad: output ", i, " of shape ", outputs[i].shape(),
+            " is a constant: it was computed from constants, detached or under NoGrad; compute it from a "
+            "Var::leaf outside of NoGrad");
   const NoGrad scope(!options.create_graph);
 
   // Nodes created before the oldest input cannot depend on any input.
@@ -26,6 +39,8 @@ inline std::vector<Var> grad(const std::vector<Var>& outputs, const std::vector<
   for (const Var& input : inputs) {
     require(input.requires_grad(), "grad: an input of shape ", input.shape(),
             " is a constant; make it with Var::leaf or compute it from one");
+    require(input.node()->frozen == 0, "grad: an input of shape ", input.shape(),
+            " is frozen; end the lifetime of Frozen first, or leave this input out");
     wanted.insert(input.node().get());
     oldest = std::min(oldest, input.node()->id);
   }
@@ -90,7 +105,8 @@ inline std::vector<Var> grad(const std::vector<Var>& outputs, const std::vector<
   std::vector<Var> result;
   for (const Var& input : inputs) {
     const auto found = gradients.find(input.node().get());
-    result.push_back(found != gradients.end() ? found->second : zeros(input.context(), input.shape()));
+    result.push_back(detail::differentiable(
+        found != gradients.end() ? found->second : zeros(input.context(), input.shape())));
   }
   return result;
 }

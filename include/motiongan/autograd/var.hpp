@@ -56,6 +56,7 @@ struct Node : std::enable_shared_from_this<Node> {
   Vjp vjp;
   const char* operation = "constant";
   bool requires_grad = false;
+  unsigned frozen = 0;         ///< lifetimes of Frozen around it: grad() with respect to it is an error
   std::size_t id = next_id();  ///< increases with creation: a node's id is larger than its inputs'
 
   Node() = default;
@@ -63,11 +64,15 @@ struct Node : std::enable_shared_from_this<Node> {
   Node& operator=(const Node&) = delete;
   ~Node() {
     // Iterative: recursion through an LSTM of many steps would overflow the stack. A node used twice is held
-    // here twice and released with the second hold.
+    // here twice and released with the second hold. Without memory for the list, what is left is released by
+    // recursion after all.
     std::vector<std::shared_ptr<Node>> held;
-    const auto take_inputs = [&held](Node& node) {
-      for (Var& input : node.inputs)
-        if (input.node_) held.push_back(std::move(input.node_));
+    const auto take_inputs = [&held](Node& node) noexcept {
+      try {
+        for (Var& input : node.inputs)
+          if (input.node_) held.push_back(std::move(input.node_));
+      } catch (const std::bad_alloc&) {
+      }
     };
     take_inputs(*this);
     while (!held.empty()) {

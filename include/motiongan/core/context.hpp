@@ -1,18 +1,23 @@
 // Context: one OpenCL device with its command queue, kernel programs and buffer pool.
 #pragma once
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "motiongan/core/buffer_pool.hpp"
+#include "motiongan/core/kernel_arguments.hpp"
 #include "motiongan/core/program.hpp"
+#include "motiongan/core/staging.hpp"
 
 namespace motiongan {
 
@@ -21,76 +26,27 @@ struct ContextOptions {
   Precision precision = Precision::f32;
   std::size_t memory_limit = 0;  ///< bytes; 0: MOTIONGAN_MEMORY_MB, else the device's global memory
   bool verbose = false;          ///< print the chosen device to standard error
+  /// Elements of one tensor; 0 or more than most_elements: most_elements. For tests.
+  std::size_t element_limit = 0;
 };
 
-/// A scalar kernel argument, converted to the Context's precision.
-struct KernelReal {
-  double value;
-};
-
-/// Global and local sizes of a launch. Local sizes are fixed per kernel: PoCL recompiles for each new one.
-struct LaunchGrid {
-  cl_uint dimensions;
-  std::array<std::size_t, 3> global, local;
-
-  /// At least `n` work-items in one dimension, in work-groups of 64; kernels skip those past n.
-  static LaunchGrid items(std::size_t n) { return {1, {(n + 63) / 64 * 64, 1, 1}, {64, 1, 1}}; }
-  /// x * y * z work-groups of one work-item, for kernels that process one tile each.
-  static LaunchGrid groups(std::size_t x, std::size_t y = 1, std::size_t z = 1) {
-    return {3, {x, y, z}, {1, 1, 1}};
-  }
-};
-
-class Context;
+/// The most elements of one tensor: kernels count them in 32 bits. The difference from 2^32 is for the
+/// work-groups, vectors and chunks that reach past the last element.
+constexpr std::size_t most_elements = (std::size_t{1} << 32) - (std::size_t{1} << 20);
 
 namespace detail {
 
-/// Sets the arguments of one launch, in order.
-struct KernelArguments {
-  cl_kernel kernel;
-  Precision precision;
-  const char* name;
-  cl_uint index = 0;
-
-  template <class T>
-  void set(const T& value) {
-    check_cl(clSetKernelArg(kernel, index, sizeof value, &value), "clSetKernelArg", ": argument ", index,
-             " of kernel ", name);
-    ++index;
-  }
-};
-
-inline void add_argument(KernelArguments& to, KernelReal real) {
-  if (to.precision == Precision::f64)
-    to.set(static_cast<cl_double>(real.value));
-  else
-    to.set(static_cast<cl_float>(real.value));
-}
-inline void add_argument(KernelArguments& to, std::size_t value) {
-  require(value <= std::numeric_limits<cl_uint>::max(), "kernel ", to.name, ": ", value,
-          " does not fit 32 bits; use a smaller batch or fewer frames");
-  to.set(static_cast<cl_uint>(value));
-}
-inline void add_argument(KernelArguments& to, cl_uint value) { to.set(value); }
-inline void add_argument(KernelArguments& to, cl_int value) { to.set(value); }
-inline void add_argument(KernelArguments& to, cl_mem value) { to.set(value); }
-
 struct ContextState {
   Device device;
-  Precision precision;
+  Precision precision = Precision::f32;
+  std::size_t element_limit = most_elements;
+  Driver driver;
   ClContext context;
   ClQueue queue;
   ContextStatistics statistics;
   std::unique_ptr<BufferPool> pool;
   std::unique_ptr<ProgramCache> programs;
-
-  /// Uploads do not wait for the queue: each keeps its data in one of these until the copy has finished.
-  struct Staging {
-    std::vector<std::byte> bytes;
-    ClEvent copied;
-  };
-  std::array<Staging, 64> staging;
-  std::size_t next_staging = 0;
+  Staging staging;
 
   struct KernelTime {
     std::size_t launches = 0;
@@ -99,13 +55,30 @@ struct ContextState {
   bool profiling = false;
   std::unordered_map<std::string, KernelTime> kernel_times;
 
+  /// See Interruptible; null without one.
+  const std::function<bool()>* interrupted = nullptr;
+  std::size_t unmarked_launches = 0;
+  ClEvent marker;
+
   ~ContextState() {
-    if (queue) clFinish(queue.get());
+    if (queue) clFinish(queue.get());  // a failure here has nobody to report it to
     for (const auto& [name, time] : kernel_times)
       std::fprintf(stderr, "%10.3f ms %8zu launches  %s\n", time.nanoseconds / 1e6, time.launches,
                    name.c_str());
   }
 };
+
+/// The number in an environment variable, 0 if it is unset. Throws Error unless it is 1 to `most`.
+inline std::size_t environment_count(const char* name, const char* unit,
+                                     std::size_t most = std::numeric_limits<std::size_t>::max()) {
+  const char* text = std::getenv(name);
+  if (!text) return 0;
+  std::size_t count = 0;
+  const auto [end, error] = std::from_chars(text, text + std::strlen(text), count);
+  require(error == std::errc() && *end == '\0' && count > 0 && count <= most, name, " is \"", text,
+          "\", expected a positive whole number of ", unit);
+  return count;
+}
 
 /// A pool buffer shared by tensors; returns to the pool with the last of them.
 class Storage {
@@ -132,42 +105,68 @@ class Context {
   /// The device of MOTIONGAN_DEVICE (see choose_device), in single precision.
   Context() : Context(ContextOptions{}) {}
 
-  /// Throws Error if no device matches, the device lacks the requested precision, MOTIONGAN_MEMORY_MB is
-  /// invalid or an OpenCL call fails.
+  /// Throws Error if no device matches, the device cannot be used or lacks the requested precision, or a
+  /// variable of the environment is invalid; DeviceError if an OpenCL call fails.
   explicit Context(const ContextOptions& options) : state_(std::make_shared<detail::ContextState>()) {
     auto& s = *state_;
-    s.device = options.device.empty() ? default_device() : choose_device(all_devices(), options.device);
+    s.device = options.device.empty() ? default_device() : choose_device(survey_devices(), options.device);
+    s.driver.device = s.device.name;
     s.precision = options.precision;
+    if (options.element_limit > 0) s.element_limit = std::min(options.element_limit, most_elements);
+    require_usable(s.device);
     require(s.precision == Precision::f32 || s.device.has_double, "device ", s.device.name,
             " has no double precision (cl_khr_fp64): use Precision::f32");
     cl_int code = CL_SUCCESS;
     const cl_context_properties properties[] = {
         CL_CONTEXT_PLATFORM, reinterpret_cast<cl_context_properties>(s.device.platform), 0};
-    s.context = ClContext(clCreateContext(properties, 1, &s.device.id, nullptr, nullptr, &code));
-    check_cl(code, "clCreateContext", ": device ", s.device.name);
+    s.context = ClContext(clCreateContext(properties, 1, &s.device.id, &detail::DriverMessages::receive,
+                                          s.driver.messages.user_data(), &code));
+    s.driver.check(code, "clCreateContext");
     const char* profile = std::getenv("MOTIONGAN_PROFILE");
     s.profiling = profile && std::strcmp(profile, "") != 0 && std::strcmp(profile, "0") != 0;
     s.queue = ClQueue(clCreateCommandQueue(s.context.get(), s.device.id,
                                            s.profiling ? CL_QUEUE_PROFILING_ENABLE : 0, &code));
-    check_cl(code, "clCreateCommandQueue", ": device ", s.device.name);
+    s.driver.check(code, "clCreateCommandQueue");
     std::size_t limit = options.memory_limit;
-    if (const char* megabytes = std::getenv("MOTIONGAN_MEMORY_MB"); limit == 0 && megabytes) {
-      const auto [end, error] = std::from_chars(megabytes, megabytes + std::strlen(megabytes), limit);
-      require(error == std::errc() && *end == '\0' && limit > 0 &&
-                  limit <= std::numeric_limits<std::size_t>::max() / 1'000'000,
-              "MOTIONGAN_MEMORY_MB is \"", megabytes, "\", expected a positive whole number of megabytes");
-      limit *= 1'000'000;
-    }
+    if (limit == 0)
+      limit = 1'000'000 * detail::environment_count("MOTIONGAN_MEMORY_MB", "megabytes",
+                                                    std::numeric_limits<std::size_t>::max() / 1'000'000);
     s.pool = std::make_unique<detail::BufferPool>(s.context.get(), limit ? limit : s.device.global_memory,
-                                                  s.device.max_allocation, s.statistics);
-    s.programs = std::make_unique<detail::ProgramCache>(s.context.get(), s.device, s.precision);
+                                                  s.device.max_allocation, s.statistics, s.driver);
+    s.pool->fail_allocation(detail::environment_count("MOTIONGAN_FAIL_ALLOCATION", "buffers"));
+    s.programs = std::make_unique<detail::ProgramCache>(s.context.get(), s.device, s.precision, s.driver);
     if (options.verbose) std::fprintf(stderr, "device: %s\n", description().c_str());
   }
 
+  /// A context of the same device and precision that computes nothing, to learn what work would need:
+  /// statistics() counts its buffers, launches and products as in a real one, but there is no memory behind
+  /// them. Kernels are not built, written data are dropped, and read data are all 0. `limited`: allocations
+  /// fail where they would in a real context; else there is no limit.
+  Context counting(bool limited = false) const {
+    constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max() / 2;
+    auto state = std::make_shared<detail::ContextState>();
+    state->device = state_->device;
+    state->precision = state_->precision;
+    state->driver.device = state->device.name;
+    state->element_limit = limited ? state_->element_limit : unlimited;
+    state->pool = std::make_unique<detail::BufferPool>(nullptr, limited ? memory_limit() : unlimited,
+                                                       limited ? device().max_allocation : unlimited,
+                                                       state->statistics, state->driver);
+    state->programs =
+        std::make_unique<detail::ProgramCache>(nullptr, state->device, state->precision, state->driver);
+    return Context(std::move(state));
+  }
+  /// Whether this is a context made by counting().
+  bool only_counts() const { return !state_->queue; }
+
+  /// Bytes that all buffers together may have.
+  std::size_t memory_limit() const { return state_->pool->limit(); }
   const Device& device() const { return state_->device; }
   Precision precision() const { return state_->precision; }
   /// Bytes per element: 4 or 8.
   std::size_t real_size() const { return state_->precision == Precision::f64 ? 8 : 4; }
+  /// The most elements of a tensor.
+  std::size_t element_limit() const { return state_->element_limit; }
   unsigned vector_width() const { return state_->programs->vector_width(); }
   cl_command_queue queue() const { return state_->queue.get(); }
   const ContextStatistics& statistics() const { return state_->statistics; }
@@ -191,8 +190,32 @@ class Context {
   /// Releases cached buffers to the driver.
   void trim() const { state_->pool->trim(); }
 
+  /// For tests: the n-th buffer that the driver is asked for from now on fails; 0: none does. The variable
+  /// MOTIONGAN_FAIL_ALLOCATION does the same from the start.
+  void fail_allocation(std::size_t n) const { state_->pool->fail_allocation(n); }
+
+  /// Throws DeviceError, with the device and what its driver reported, unless `code` is CL_SUCCESS.
+  template <class... Details>
+  void check(cl_int code, const char* call, const Details&... details) const {
+    state_->driver.check(code, call, details...);
+  }
+
   /// Waits until all enqueued work has finished.
-  void finish() const { check_cl(clFinish(queue()), "clFinish"); }
+  void finish() const {
+    if (only_counts()) return;
+    check(clFinish(queue()), "clFinish");
+  }
+
+  /// An event that is complete once all work enqueued so far has finished.
+  ClEvent marker() const {
+    cl_event event = nullptr;
+    check(clEnqueueMarkerWithWaitList(queue(), 0, nullptr, &event), "clEnqueueMarkerWithWaitList");
+    return ClEvent(event);
+  }
+  void wait_for(const ClEvent& done) const {
+    const cl_event event = done.get();
+    check(clWaitForEvents(1, &event), "clWaitForEvents");
+  }
 
   /// Enqueues kernel `name` of cl/<file>.cl. A Tensor becomes two arguments (buffer, first element), a
   /// std::size_t a cl_uint, a KernelReal a scalar of the context's precision. An empty grid launches nothing.
@@ -200,48 +223,49 @@ class Context {
   template <class... Arguments>
   void launch(const char* file, const char* name, const LaunchGrid& grid,
               const Arguments&... arguments) const {
+    if (only_counts())
+      return void(state_->statistics.launches += grid.global[0] * grid.global[1] * grid.global[2] > 0);
     if (grid.global[0] == 0 || grid.global[1] == 0 || grid.global[2] == 0) return;
-    detail::KernelArguments to{state_->programs->kernel(file, name), state_->precision, name};
+    if (state_->interrupted) stop_if_interrupted();
+    require(grid.global[0] <= std::numeric_limits<cl_uint>::max(), "kernel ", name, ": ", grid.global[0],
+            " work-items do not fit 32 bits; use a smaller batch or fewer frames");
+    detail::KernelArguments to{state_->programs->kernel(file, name), state_->driver, state_->precision, name};
     (add_argument(to, arguments), ...);
     cl_event event = nullptr;
     const cl_int code =
         clEnqueueNDRangeKernel(queue(), to.kernel, grid.dimensions, nullptr, grid.global.data(),
                                grid.local.data(), 0, nullptr, state_->profiling ? &event : nullptr);
     if (code != CL_SUCCESS)
-      throw Error("clEnqueueNDRangeKernel failed with ", opencl_error_name(code), ": kernel ", name,
-                  " of cl/", file, ".cl, global size ", grid.global[0], "x", grid.global[1], "x",
-                  grid.global[2], ", local size ", grid.local[0], ", arguments", describe(arguments)...);
+      check(code, "clEnqueueNDRangeKernel", ": kernel ", name, " of cl/", file, ".cl, global size ",
+            grid.global[0], "x", grid.global[1], "x", grid.global[2], ", local size ", grid.local[0],
+            ", arguments", describe(arguments)...);
     ++state_->statistics.launches;
     if (event) record_time(name, ClEvent(event));
   }
 
-  /// Copies `bytes` to the device without waiting for the queue; `data` may be reused on return.
+  /// Copies `bytes` to the device; `data` may be reused on return. Waits for the queue only if it is many MB
+  /// (see Staging).
   void write(cl_mem buffer, std::size_t byte_offset, const void* data, std::size_t bytes) const {
     if (bytes == 0) return;
     ++state_->statistics.writes;
-    auto& slot = state_->staging[state_->next_staging++ % state_->staging.size()];
-    if (slot.copied) {
-      const cl_event event = slot.copied.get();
-      check_cl(clWaitForEvents(1, &event), "clWaitForEvents");
-    }
-    const auto* first = static_cast<const std::byte*>(data);
-    slot.bytes.assign(first, first + bytes);
-    cl_event event = nullptr;
-    check_cl(clEnqueueWriteBuffer(queue(), buffer, CL_FALSE, byte_offset, bytes, slot.bytes.data(), 0,
-                                  nullptr, &event),
-             "clEnqueueWriteBuffer", ": ", bytes, " bytes");
-    slot.copied = ClEvent(event);
+    state_->statistics.bytes_written += bytes;
+    if (only_counts()) return;
+    state_->staging.upload(state_->driver, queue(), buffer, byte_offset, data, bytes);
+    state_->statistics.bytes_staged = state_->staging.bytes();
   }
 
   /// Copies `bytes` to the host; waits for all work enqueued before.
   void read(cl_mem buffer, std::size_t byte_offset, void* data, std::size_t bytes) const {
     if (bytes == 0) return;
     ++state_->statistics.reads;
-    check_cl(clEnqueueReadBuffer(queue(), buffer, CL_TRUE, byte_offset, bytes, data, 0, nullptr, nullptr),
-             "clEnqueueReadBuffer", ": ", bytes, " bytes");
+    if (only_counts()) return void(std::memset(data, 0, bytes));
+    check(clEnqueueReadBuffer(queue(), buffer, CL_TRUE, byte_offset, bytes, data, 0, nullptr, nullptr),
+          "clEnqueueReadBuffer", ": ", bytes, " bytes");
   }
 
  private:
+  explicit Context(std::shared_ptr<detail::ContextState> state) : state_(std::move(state)) {}
+
   template <class T>
   static std::string describe(const T& argument) {
     if constexpr (requires { argument.describe(); })
@@ -252,9 +276,21 @@ class Context {
       return concat(" ", argument);
   }
 
+  friend class Interruptible;
+
+  /// Keeps the host at most two times `most` launches ahead of the device. Throws Interrupted.
+  void stop_if_interrupted() const {
+    constexpr std::size_t most = 8;
+    if ((*state_->interrupted)()) throw Interrupted("interrupted");
+    if (++state_->unmarked_launches < most) return;
+    state_->unmarked_launches = 0;
+    if (state_->marker) wait_for(state_->marker);
+    state_->marker = marker();
+  }
+
   void record_time(const char* name, const ClEvent& done) const {
     const cl_event event = done.get();
-    check_cl(clWaitForEvents(1, &event), "clWaitForEvents", ": kernel ", name);
+    check(clWaitForEvents(1, &event), "clWaitForEvents", ": kernel ", name);
     cl_ulong start = 0, end = 0;
     clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_START, sizeof start, &start, nullptr);
     clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_END, sizeof end, &end, nullptr);
@@ -264,6 +300,25 @@ class Context {
   }
 
   std::shared_ptr<detail::ContextState> state_;
+};
+
+/// While an object of this class exists, each launch in `context` calls `interrupted` and throws Interrupted
+/// if it returns true. The host then stays close to the device, so that little work is left in the queue.
+class Interruptible {
+ public:
+  /// `interrupted` must outlive the object.
+  Interruptible(const Context& context, const std::function<bool()>& interrupted)
+      : context_(context), before_(std::exchange(context.state_->interrupted, &interrupted)) {}
+  ~Interruptible() {
+    context_.state_->interrupted = before_;
+    context_.state_->marker = {};
+  }
+  Interruptible(const Interruptible&) = delete;
+  Interruptible& operator=(const Interruptible&) = delete;
+
+ private:
+  Context context_;
+  const std::function<bool()>* before_;
 };
 
 }  // namespace motiongan

@@ -105,8 +105,20 @@ class Error : public std::runtime_error {
   explicit Error(const Parts&... parts) : std::runtime_error(concat(parts...)) {}
 };
 
+/// The device or its driver failed: an OpenCL call, a build, or a request for memory.
+class DeviceError : public Error {
+ public:
+  using Error::Error;
+};
+
 /// Training diverged: a loss or a weight is no longer finite.
 class DivergedError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Work was given up because somebody asked for it; see Interruptible.
+class Interrupted : public Error {
  public:
   using Error::Error;
 };

@@ -169,6 +169,10 @@ struct Field {
       require(!info.range.limits() || info.range.contains(**x), info.key, " is ", **x, ", expected ",
               info.range.text());
       require(std::isfinite(**x), info.key, " is ", **x, ", expected a finite number");
+    } else if (const auto* stages = std::get_if<std::vector<ScheduleStage>*>(&access)) {
+      for (const ScheduleStage& stage : **stages)
+        require(std::isfinite(stage.value), info.key, " from ", stage.iteration, " on is ", stage.value,
+                ", expected a finite number");
     }
   }
 };

@@ -62,17 +62,24 @@ struct ShapeOf {
   }
 };
 
+/// a + b * c, or the largest number if that does not fit.
+inline std::size_t sum_with_product(std::size_t a, std::size_t b, std::size_t c) {
+  std::size_t result = 0;
+  const bool over = __builtin_mul_overflow(b, c, &result) || __builtin_add_overflow(a, result, &result);
+  return over ? std::numeric_limits<std::size_t>::max() : result;
+}
+
 /// Throws Error unless the matrix lies inside its tensor.
 inline void check_matrix(const GemmCall& g, const char* name, const Tensor& tensor, std::size_t offset,
                          std::size_t rows, std::size_t columns, std::size_t ld, std::size_t batch_stride) {
   if (rows == 0 || columns == 0 || g.batch == 0) return;
   require(!tensor.empty(), g, ": ", name, " is empty");
-  const std::size_t end = offset + (g.batch - 1) * batch_stride + (rows - 1) * ld + columns;
+  const std::size_t problem = sum_with_product(columns, rows - 1, ld),
+                    all = sum_with_product(problem, g.batch - 1, batch_stride),
+                    end = sum_with_product(all, offset, 1);
   require(end <= tensor.size(), g, ": ", name, " (", rows, " rows of ", columns, ", leading dimension ", ld,
           ", offset ", offset, ", batch stride ", batch_stride, ") needs ", end, " elements, its tensor ",
           ShapeOf{tensor}, " has ", tensor.size());
-  require(tensor.offset() + end <= std::numeric_limits<cl_uint>::max(), g, ": ", name,
-          " is too large: kernels count elements in 32 bits; use a smaller batch or fewer frames");
 }
 
 inline void check_gemm(const Context& context, const GemmCall& g) {
@@ -84,14 +91,15 @@ inline void check_gemm(const Context& context, const GemmCall& g) {
                  g.b_batch_stride);
   }
   check_matrix(g, "C", g.c, g.c_offset, g.m, g.n, g.c_ld, g.c_batch_stride);
-  require(g.m <= 1 || g.c_ld >= g.n, g, ": the rows of C overlap: c_ld must be at least n");
+  require(g.m <= 1 || g.batch == 0 || g.c_ld >= g.n, g, ": the rows of C overlap: c_ld must be at least n");
   const std::size_t c_size = (g.m - 1) * g.c_ld + g.n;
   require(g.batch <= 1 || g.c_batch_stride >= c_size || (g.m > 1 && g.c_batch_stride >= g.n) || g.m == 0, g,
           ": the problems of the batch overlap in C: c_batch_stride is ", g.c_batch_stride);
   if (!g.bias.empty())
     require(g.bias.size() == g.n, g, ": bias has shape ", ShapeOf{g.bias}, ", expected n elements");
   if (!g.residual.empty() && g.m > 0) {
-    const std::size_t end = g.residual_offset + (g.m - 1) * g.residual_ld + g.n;
+    const std::size_t end =
+        sum_with_product(sum_with_product(g.n, g.m - 1, g.residual_ld), g.residual_offset, 1);
     require(end <= g.residual.size(), g, ": the residual (leading dimension ", g.residual_ld, ", offset ",
             g.residual_offset, ") needs ", end, " elements, its tensor ", ShapeOf{g.residual}, " has ",
             g.residual.size());
@@ -99,9 +107,10 @@ inline void check_gemm(const Context& context, const GemmCall& g) {
   if (!g.b_panels.empty())
     require(g.batch == 1 && !g.a_transposed, g, ": a packed B needs batch 1 and an A that is not transposed");
   if (!g.rectified.empty())
-    require(g.batch == 1 && g.c_ld == g.n && g.rectified_offset + g.m * g.n <= g.rectified.size(), g,
-            ": rectified needs batch 1, c_ld = n and ", g.m * g.n, " elements from ", g.rectified_offset,
-            "; its tensor has shape ", ShapeOf{g.rectified});
+    require(
+        g.batch == 1 && g.c_ld == g.n && sum_with_product(g.rectified_offset, g.m, g.n) <= g.rectified.size(),
+        g, ": rectified needs batch 1, c_ld = n and ", g.m * g.n, " elements from ", g.rectified_offset,
+        "; its tensor has shape ", ShapeOf{g.rectified});
   for (const Tensor* tensor : {&g.a, &g.b, &g.c, &g.bias, &g.residual, &g.rectified})
     require(tensor->empty() || tensor->context() == context, g, ": a tensor belongs to another context");
 }

@@ -12,75 +12,107 @@
 
 namespace motiongan {
 
+namespace detail {
+struct OpenclCode {
+  cl_int code;
+  const char* name;
+};
+#define MOTIONGAN_CODE(name) \
+  { name, #name }
+inline constexpr OpenclCode opencl_codes[] = {
+    MOTIONGAN_CODE(CL_SUCCESS),
+    MOTIONGAN_CODE(CL_DEVICE_NOT_FOUND),
+    MOTIONGAN_CODE(CL_DEVICE_NOT_AVAILABLE),
+    MOTIONGAN_CODE(CL_COMPILER_NOT_AVAILABLE),
+    MOTIONGAN_CODE(CL_MEM_OBJECT_ALLOCATION_FAILURE),
+    MOTIONGAN_CODE(CL_OUT_OF_RESOURCES),
+    MOTIONGAN_CODE(CL_OUT_OF_HOST_MEMORY),
+    MOTIONGAN_CODE(CL_PROFILING_INFO_NOT_AVAILABLE),
+    MOTIONGAN_CODE(CL_MEM_COPY_OVERLAP),
+    MOTIONGAN_CODE(CL_BUILD_PROGRAM_FAILURE),
+    MOTIONGAN_CODE(CL_MAP_FAILURE),
+    MOTIONGAN_CODE(CL_MISALIGNED_SUB_BUFFER_OFFSET),
+    MOTIONGAN_CODE(CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST),
+    MOTIONGAN_CODE(CL_COMPILE_PROGRAM_FAILURE),
+    MOTIONGAN_CODE(CL_LINKER_NOT_AVAILABLE),
+    MOTIONGAN_CODE(CL_LINK_PROGRAM_FAILURE),
+    MOTIONGAN_CODE(CL_KERNEL_ARG_INFO_NOT_AVAILABLE),
+    MOTIONGAN_CODE(CL_INVALID_VALUE),
+    MOTIONGAN_CODE(CL_INVALID_DEVICE_TYPE),
+    MOTIONGAN_CODE(CL_INVALID_PLATFORM),
+    MOTIONGAN_CODE(CL_INVALID_DEVICE),
+    MOTIONGAN_CODE(CL_INVALID_CONTEXT),
+    MOTIONGAN_CODE(CL_INVALID_QUEUE_PROPERTIES),
+    MOTIONGAN_CODE(CL_INVALID_COMMAND_QUEUE),
+    MOTIONGAN_CODE(CL_INVALID_HOST_PTR),
+    MOTIONGAN_CODE(CL_INVALID_MEM_OBJECT),
+    MOTIONGAN_CODE(CL_INVALID_BINARY),
+    MOTIONGAN_CODE(CL_INVALID_BUILD_OPTIONS),
+    MOTIONGAN_CODE(CL_INVALID_PROGRAM),
+    MOTIONGAN_CODE(CL_INVALID_PROGRAM_EXECUTABLE),
+    MOTIONGAN_CODE(CL_INVALID_KERNEL_NAME),
+    MOTIONGAN_CODE(CL_INVALID_KERNEL_DEFINITION),
+    MOTIONGAN_CODE(CL_INVALID_KERNEL),
+    MOTIONGAN_CODE(CL_INVALID_ARG_INDEX),
+    MOTIONGAN_CODE(CL_INVALID_ARG_VALUE),
+    MOTIONGAN_CODE(CL_INVALID_ARG_SIZE),
+    MOTIONGAN_CODE(CL_INVALID_KERNEL_ARGS),
+    MOTIONGAN_CODE(CL_INVALID_WORK_DIMENSION),
+    MOTIONGAN_CODE(CL_INVALID_WORK_GROUP_SIZE),
+    MOTIONGAN_CODE(CL_INVALID_WORK_ITEM_SIZE),
+    MOTIONGAN_CODE(CL_INVALID_GLOBAL_OFFSET),
+    MOTIONGAN_CODE(CL_INVALID_EVENT_WAIT_LIST),
+    MOTIONGAN_CODE(CL_INVALID_EVENT),
+    MOTIONGAN_CODE(CL_INVALID_OPERATION),
+    MOTIONGAN_CODE(CL_INVALID_BUFFER_SIZE),
+    MOTIONGAN_CODE(CL_INVALID_GLOBAL_WORK_SIZE),
+    MOTIONGAN_CODE(CL_INVALID_PROPERTY),
+    MOTIONGAN_CODE(CL_INVALID_COMPILER_OPTIONS),
+    MOTIONGAN_CODE(CL_INVALID_LINKER_OPTIONS),
+    {-1001, "CL_PLATFORM_NOT_FOUND_KHR"},          // of the ICD loader
+    {-9999, "illegal read or write by a kernel"},  // of NVIDIA's driver
+};
+#undef MOTIONGAN_CODE
+}  // namespace detail
+
 /// Name and value of an OpenCL error code: "CL_OUT_OF_RESOURCES (-5)".
 inline std::string opencl_error_name(cl_int code) {
-  const auto name = [code]() -> const char* {
-    switch (code) {
-      case CL_SUCCESS:
-        return "CL_SUCCESS";
-      case CL_DEVICE_NOT_FOUND:
-        return "CL_DEVICE_NOT_FOUND";
-      case CL_DEVICE_NOT_AVAILABLE:
-        return "CL_DEVICE_NOT_AVAILABLE";
-      case CL_COMPILER_NOT_AVAILABLE:
-        return "CL_COMPILER_NOT_AVAILABLE";
-      case CL_MEM_OBJECT_ALLOCATION_FAILURE:
-        return "CL_MEM_OBJECT_ALLOCATION_FAILURE";
-      case CL_OUT_OF_RESOURCES:
-        return "CL_OUT_OF_RESOURCES";
-      case CL_OUT_OF_HOST_MEMORY:
-        return "CL_OUT_OF_HOST_MEMORY";
-      case CL_BUILD_PROGRAM_FAILURE:
-        return "CL_BUILD_PROGRAM_FAILURE";
-      case CL_INVALID_VALUE:
-        return "CL_INVALID_VALUE";
-      case CL_INVALID_DEVICE:
-        return "CL_INVALID_DEVICE";
-      case CL_INVALID_CONTEXT:
-        return "CL_INVALID_CONTEXT";
-      case CL_INVALID_COMMAND_QUEUE:
-        return "CL_INVALID_COMMAND_QUEUE";
-      case CL_INVALID_MEM_OBJECT:
-        return "CL_INVALID_MEM_OBJECT";
-      case CL_INVALID_BUILD_OPTIONS:
-        return "CL_INVALID_BUILD_OPTIONS";
-      case CL_INVALID_PROGRAM_EXECUTABLE:
-        return "CL_INVALID_PROGRAM_EXECUTABLE";
-      case CL_INVALID_KERNEL_NAME:
-        return "CL_INVALID_KERNEL_NAME";
-      case CL_INVALID_KERNEL:
-        return "CL_INVALID_KERNEL";
-      case CL_INVALID_ARG_INDEX:
-        return "CL_INVALID_ARG_INDEX";
-      case CL_INVALID_ARG_VALUE:
-        return "CL_INVALID_ARG_VALUE";
-      case CL_INVALID_ARG_SIZE:
-        return "CL_INVALID_ARG_SIZE";
-      case CL_INVALID_KERNEL_ARGS:
-        return "CL_INVALID_KERNEL_ARGS";
-      case CL_INVALID_WORK_DIMENSION:
-        return "CL_INVALID_WORK_DIMENSION";
-      case CL_INVALID_WORK_GROUP_SIZE:
-        return "CL_INVALID_WORK_GROUP_SIZE";
-      case CL_INVALID_WORK_ITEM_SIZE:
-        return "CL_INVALID_WORK_ITEM_SIZE";
-      case CL_INVALID_BUFFER_SIZE:
-        return "CL_INVALID_BUFFER_SIZE";
-      case CL_INVALID_GLOBAL_WORK_SIZE:
-        return "CL_INVALID_GLOBAL_WORK_SIZE";
-      case -1001:
-        return "CL_PLATFORM_NOT_FOUND_KHR";
-      default:
-        return "OpenCL error";
-    }
-  }();
-  return concat(name, " (", code, ")");
+  for (const auto& known : detail::opencl_codes)
+    if (known.code == code) return concat(known.name, " (", code, ")");
+  return concat("unknown OpenCL error (", code, ")");
 }
 
-/// Throws Error, with the call, the error code and `details`, unless `code` is CL_SUCCESS.
+/// What to do about an error code, with the punctuation before it; "" if the code does not tell.
+inline const char* opencl_advice(cl_int code) {
+  switch (code) {
+    case CL_MEM_OBJECT_ALLOCATION_FAILURE:
+    case CL_OUT_OF_RESOURCES:
+    case CL_OUT_OF_HOST_MEMORY:
+      return "; the device or its driver is out of memory (some drivers also say so when a kernel crashed): "
+             "use a smaller --batch or fewer --frames, end other programs on the device, set "
+             "MOTIONGAN_MEMORY_MB to what is free, or choose another --device";
+    case CL_DEVICE_NOT_AVAILABLE:
+    case CL_INVALID_COMMAND_QUEUE:
+    case CL_INVALID_CONTEXT:
+    case CL_INVALID_DEVICE:
+    case CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST:
+    case -9999:
+      return "; the device was lost or its driver was reset: see whether `motiongan devices` still lists it "
+             "and start again, or choose another --device";
+    case CL_COMPILER_NOT_AVAILABLE:
+    case CL_LINKER_NOT_AVAILABLE:
+      return "; the driver cannot compile kernels: install the vendor's full package, or choose another "
+             "--device (see `motiongan devices`)";
+    default:
+      return "";
+  }
+}
+
+/// Throws DeviceError, with the call, the error code and `details`, unless `code` is CL_SUCCESS.
 template <class... Details>
 void check_cl(cl_int code, const char* call, const Details&... details) {
-  if (code != CL_SUCCESS) throw Error(call, " failed with ", opencl_error_name(code), details...);
+  if (code != CL_SUCCESS)
+    throw DeviceError(call, " failed with ", opencl_error_name(code), details..., opencl_advice(code));
 }
 
 /// Owns one OpenCL object and releases it on destruction; move-only.

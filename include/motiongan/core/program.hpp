@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "motiongan/core/device.hpp"
+#include "motiongan/core/driver.hpp"
 #include "motiongan/generated/kernels.hpp"
 
 namespace motiongan {
@@ -63,8 +64,8 @@ inline std::string kernel_source(std::string_view name) {
 /// Programs and kernels of one context, built on first use and cached.
 class ProgramCache {
  public:
-  ProgramCache(cl_context context, const Device& device, Precision precision)
-      : context_(context), device_(device), precision_(precision) {}
+  ProgramCache(cl_context context, const Device& device, Precision precision, Driver& driver)
+      : context_(context), device_(device), precision_(precision), driver_(driver) {}
 
   /// Elements per vector (VW in the kernels): 4, 8 or 16 on a CPU, by its vector registers, 4 elsewhere.
   unsigned vector_width() const {
@@ -73,14 +74,14 @@ class ProgramCache {
     return precision_ == Precision::f64 && width > 4 ? width / 2 : width;
   }
 
-  /// Kernel `name` of cl/<file>.cl. Throws Error, with the build log, if the file does not compile.
+  /// Kernel `name` of cl/<file>.cl. Throws DeviceError, with the build log, if the file does not compile.
   cl_kernel kernel(const char* file, const char* name) {
     std::string& key = key_;  // reused, so that lookups do not allocate
     key.assign(file).append(1, '/').append(name);
     if (const auto found = kernels_.find(key); found != kernels_.end()) return found->second.get();
     cl_int code = CL_SUCCESS;
     ClKernel kernel(clCreateKernel(program(file), name, &code));
-    check_cl(code, "clCreateKernel", ": kernel ", name, " of cl/", file, ".cl");
+    driver_.check(code, "clCreateKernel", ": kernel ", name, " of cl/", file, ".cl");
     return kernels_.emplace(key, std::move(kernel)).first->second.get();
   }
 
@@ -90,29 +91,61 @@ class ProgramCache {
     std::string text = kernel_source("prelude") + kernel_source(file);
     if (file == "elementwise")
       for (const auto& [name, line] : ElementwiseKernel::all()) text += line;
-    const char* source = text.c_str();
+    return programs_.emplace(file, build(file, text.c_str())).first->second.get();
+  }
+
+  ClProgram build(const std::string& file, const char* source) {
     cl_int code = CL_SUCCESS;
     ClProgram program(clCreateProgramWithSource(context_, 1, &source, nullptr, &code));
-    check_cl(code, "clCreateProgramWithSource", ": cl/", file, ".cl");
-    const std::string options =
-        concat("-cl-std=CL1.2 -DREAL=", precision_ == Precision::f64 ? "double" : "float",
-               precision_ == Precision::f64 ? " -DREAL_IS_DOUBLE" : "", " -DVW=", vector_width(),
-               device_.is_cpu() ? " -DDEVICE_IS_CPU" : "");
-    code = clBuildProgram(program.get(), 1, &device_.id, options.c_str(), nullptr, nullptr);
-    if (code != CL_SUCCESS) {
-      std::size_t size = 0;
-      clGetProgramBuildInfo(program.get(), device_.id, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);
-      std::string log(size, '\0');
-      clGetProgramBuildInfo(program.get(), device_.id, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
-      throw Error("clBuildProgram failed with ", opencl_error_name(code), " for cl/", file, ".cl on ",
-                  device_.name, " (options ", options, "):\n", log);
+    driver_.check(code, "clCreateProgramWithSource", ": cl/", file, ".cl");
+    code = compile(program.get(), standard_);
+    if (code == CL_SUCCESS) return program;
+    const std::string log = build_log(program.get());
+    // Some drivers refuse the option for the language version, and compile 1.2 or later without it.
+    const bool refused = code == CL_INVALID_BUILD_OPTIONS || code == CL_INVALID_COMPILER_OPTIONS ||
+                         code == CL_BUILD_PROGRAM_FAILURE || code == CL_COMPILE_PROGRAM_FAILURE;
+    const bool tries_again = refused && *standard_ != '\0';
+    if (tries_again && compile(program.get(), "") == CL_SUCCESS) {
+      standard_ = "";
+      return program;
     }
-    return programs_.emplace(file, std::move(program)).first->second.get();
+    const std::string reported = driver_.messages.take();
+    throw DeviceError("clBuildProgram failed with ", opencl_error_name(code), " for cl/", file, ".cl on ",
+                      device_.name, " (options ", options(standard_),
+                      tries_again ? ", and without the first" : "", "):\n", log,
+                      reported.empty() ? "" : "\nthe driver reports: ", reported, build_advice(code, log));
+  }
+
+  std::string options(const char* standard) const {
+    return concat(standard, "-DREAL=", precision_ == Precision::f64 ? "double" : "float",
+                  precision_ == Precision::f64 ? " -DREAL_IS_DOUBLE" : "", " -DVW=", vector_width(),
+                  device_.is_cpu() ? " -DDEVICE_IS_CPU" : "");
+  }
+
+  cl_int compile(cl_program program, const char* standard) const {
+    return clBuildProgram(program, 1, &device_.id, options(standard).c_str(), nullptr, nullptr);
+  }
+
+  std::string build_log(cl_program program) const {
+    std::size_t size = 0;
+    clGetProgramBuildInfo(program, device_.id, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);
+    std::string log(size, '\0');
+    clGetProgramBuildInfo(program, device_.id, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
+    while (!log.empty() && (log.back() == '\0' || log.back() == '\n')) log.pop_back();
+    return log;
+  }
+
+  /// A compiler that found no error may lack memory or, as PoCL does not say, a cache that it can write to.
+  std::string build_advice(cl_int code, const std::string& log) const {
+    if (log.find("error:") != std::string::npos) return {};
+    return concat(opencl_advice(code), is_pocl(device_.platform_name) ? concat("\n", pocl_cache_advice) : "");
   }
 
   cl_context context_;
   Device device_;
   Precision precision_;
+  Driver& driver_;
+  const char* standard_ = "-cl-std=CL1.2 ";
   std::string key_;
   std::unordered_map<std::string, ClProgram> programs_;
   std::unordered_map<std::string, ClKernel> kernels_;

@@ -73,9 +73,12 @@ inline std::size_t random_below(const RandomKey& key, std::uint32_t sample, std:
 }
 
 /// Standard normal noise, [frames, batch, channels]. Row t of sample b belongs to frame key.first_frame + t
-/// (+ frame_of[b] if given): a frame's noise does not depend on where the array begins.
+/// (+ frame_of[b] if given): a frame's noise does not depend on where the array begins. Throws Error unless
+/// there is one frame_of per sample.
 inline Tensor random_normal(const Context& context, const RandomKey& key, std::size_t frames,
                             std::size_t batch, std::size_t channels, const Indices& frame_of = {}) {
+  require(frame_of.empty() || frame_of.size() == batch, "random_normal: ", frame_of.size(),
+          " first frames for ", batch, " samples");
   Tensor out(context, {frames, batch, channels});
   context.launch("random", "random_normal", LaunchGrid::items(frames * batch * ((channels + 63) / 64)), out,
                  frames, batch, channels, key.seed_low(), key.seed_high(), static_cast<cl_uint>(key.stream),
@@ -105,10 +108,17 @@ inline Tensor random_uniform(const Context& context, const RandomKey& key, std::
   return out;
 }
 
-/// Uniform integers in [low, low + count), one per sample: [batch].
+/// Uniform integers in [low, low + count), one per sample: [batch]. Throws Error if there is none or one does
+/// not fit an int.
 inline Indices random_integers(const Context& context, const RandomKey& key, std::size_t batch, int low,
                                std::size_t count) {
+  constexpr auto most = std::numeric_limits<cl_int>::max();
+  require(count > 0 && count <= static_cast<std::size_t>(most) + 1 &&
+              low <= most - static_cast<long long>(count - 1),
+          "random_integers: ", count, " integers from ", low, ", expected at least one and none above ",
+          most);
   Indices out(context, batch);
+  out.set_range(low, static_cast<cl_int>(low + static_cast<long long>(count - 1)));
   context.launch("random", "random_integers", LaunchGrid::items(batch), out, batch, static_cast<cl_int>(low),
                  count, key.seed_low(), key.seed_high(), static_cast<cl_uint>(key.stream), key.step,
                  key.first_sample);

@@ -12,24 +12,47 @@ namespace motiongan {
 /// Sizes of the axes, row-major. Motion is [frames, batch, channels].
 using Shape = std::vector<std::size_t>;
 
+/// The product of the sizes. Throws Error if that of any of the axes does not fit 64 bits.
 inline std::size_t element_count(const Shape& shape) {
   std::size_t n = 1;
-  for (std::size_t size : shape) n *= size;
-  return n;
+  bool none = false;
+  for (std::size_t size : shape) {
+    none = none || size == 0;
+    require(
+        !__builtin_mul_overflow(n, size == 0 ? 1 : size, &n), "a tensor of shape ", shape,
+        " has more elements than fit 64 bits; use a smaller batch, fewer frames or a smaller hidden width");
+  }
+  return none ? 0 : n;
 }
 
 /// "[32, 64, 93]"
 inline std::string to_string(const Shape& shape) { return concat(shape); }
+
+namespace detail {
+
+/// Memory for `count` elements, as many as `shape` has. Throws Error for more than kernels can count. This is
+/// the one place where that is checked: all indices, offsets and strides within a tensor are less than its
+/// number of elements.
+inline std::shared_ptr<Storage> allocate_elements(const Context& context, const Shape& shape,
+                                                  std::size_t count, std::size_t element_size) {
+  require(count <= context.element_limit(), "a tensor of shape ", shape, " has ", count,
+          " elements, kernels count up to ", context.element_limit(),
+          "; use a smaller batch, fewer frames or a smaller hidden width");
+  return context.allocate(count * element_size);
+}
+
+}  // namespace detail
 
 /// A contiguous array on the device, in its context's precision. Copies and views share the data; a new
 /// tensor is not initialised.
 class Tensor {
  public:
   Tensor() = default;
+  /// Throws Error for more elements than kernels can count, or than there is memory for.
   Tensor(const Context& context, Shape shape)
       : context_(context),
-        storage_(context.allocate(element_count(shape) * context.real_size())),
         size_(element_count(shape)),
+        storage_(detail::allocate_elements(context, shape, size_, context.real_size())),
         shape_(std::move(shape)) {}
 
   /// A tensor with the given values, converted to the context's precision. Throws Error if their number does
@@ -66,7 +89,8 @@ class Tensor {
   /// A contiguous part of the same data, from element `first`. Throws Error if it exceeds the tensor.
   Tensor view(std::size_t first, Shape shape) const {
     const std::size_t n = element_count(shape);
-    require(first + n <= size_, "view of ", n, " elements from ", first, " does not fit ", shape_);
+    require(first <= size_ && n <= size_ - first, "view of ", n, " elements from ", first, " does not fit ",
+            shape_);
     Tensor t = *this;
     t.offset_ += first;
     t.size_ = n;
@@ -120,17 +144,24 @@ class Tensor {
   }
 
   std::optional<Context> context_;  // empty for a default-constructed tensor
+  std::size_t size_ = 0;
   std::shared_ptr<detail::Storage> storage_;
-  std::size_t offset_ = 0, size_ = 0;
+  std::size_t offset_ = 0;
   Shape shape_;
 };
 
-/// Integers on the device: word ids, row indices, frame offsets.
+/// Integers on the device: word ids, row indices, frame offsets. They remember their range, so that
+/// operations can check it without reading from the device.
 class Indices {
  public:
   Indices() = default;
+  /// Not initialised: write() gives them values; if a kernel does, set_range() gives their range. Throws
+  /// Error as Tensor does.
   Indices(const Context& context, std::size_t size)
-      : context_(context), storage_(context.allocate(size * sizeof(cl_int))), size_(size) {}
+      : context_(context),
+        storage_(detail::allocate_elements(context, {size}, size, sizeof(cl_int))),
+        size_(size),
+        range_(std::make_shared<Range>()) {}
   Indices(const Context& context, std::span<const cl_int> values) : Indices(context, values.size()) {
     write(values);
   }
@@ -144,7 +175,29 @@ class Indices {
   void write(std::span<const cl_int> values) {
     require(values.size() == size_, values.size(), " values given for ", size_, " indices");
     context_->write(buffer(), 0, values.data(), values.size_bytes());
+    Range range{.known = true};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (values[i] < values[range.least_at]) range.least_at = i;
+      if (values[i] > values[range.most_at]) range.most_at = i;
+    }
+    if (!values.empty()) range.least = values[range.least_at], range.most = values[range.most_at];
+    *range_ = range;
   }
+
+  /// States that all values that a kernel has written lie in least .. most.
+  void set_range(cl_int least, cl_int most) {
+    *range_ = {.known = true, .drawn = true, .least = least, .most = most};
+  }
+  /// Throws Error, starting with `operation` and naming the index and its place, unless all values lie in
+  /// least .. most.
+  void check_range(const char* operation, long long least, long long most) const {
+    if (size_ == 0) return;
+    const Range& range = *range_;
+    require(range.known, operation, ": the indices have no values yet; write() them first");
+    if (range.least < least) refuse(operation, range.least, range.least_at, least, most);
+    if (range.most > most) refuse(operation, range.most, range.most_at, least, most);
+  }
+
   std::vector<cl_int> to_host() const {
     std::vector<cl_int> values(size_);
     context_->read(buffer(), 0, values.data(), size_ * sizeof(cl_int));
@@ -153,9 +206,25 @@ class Indices {
   std::string describe() const { return concat("indices[", size_, "]"); }
 
  private:
+  struct Range {
+    bool known = false, drawn = false;  // drawn: by a kernel, so that places are not known
+    cl_int least = 0, most = 0;
+    std::size_t least_at = 0, most_at = 0;
+  };
+
+  [[noreturn]] void refuse(const char* operation, cl_int index, std::size_t at, long long least,
+                           long long most) const {
+    const std::string expected = most < least ? std::string("none") : concat(least, " to ", most);
+    if (range_->drawn)
+      throw Error(operation, ": indices drawn from ", range_->least, " to ", range_->most, ", expected ",
+                  expected);
+    throw Error(operation, ": index ", index, " at place ", at, " of ", size_, ", expected ", expected);
+  }
+
   std::optional<Context> context_;
   std::shared_ptr<detail::Storage> storage_;
   std::size_t size_ = 0;
+  std::shared_ptr<Range> range_;  // shared like the data
 };
 
 namespace detail {

@@ -40,7 +40,7 @@ inline ActionLabels parse_action_labels(std::string_view text, std::string_view 
 
 /// As parse_action_labels, from a file. Throws Error also if the file cannot be read or has no labels.
 inline ActionLabels read_action_labels(const std::filesystem::path& path) {
-  ActionLabels labels = parse_action_labels(read_text(path, "label file"), path.string());
+  ActionLabels labels = parse_action_labels(read_text(path, "label file", largest_list_file), path.string());
   require(!labels.empty(), path.string(), " holds no labels, expected lines of clip id <TAB> label");
   return labels;
 }

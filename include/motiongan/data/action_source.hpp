@@ -24,17 +24,17 @@ namespace motiongan::motion {
 /// Joint positions of a motion at `rate` frames per second, of the joint `root` (negative: moving_root) and
 /// those below it.
 inline PositionClip positions_of(const Motion& motion, const std::string& id, double rate, int root = -1) {
-  const Motion folded = fold_into_root(resample(motion, rate), root < 0 ? moving_root(motion) : root);
+  const Motion folded = fold_into_root(resample(motion, rate, id), root < 0 ? moving_root(motion) : root);
   return {id, folded.skeleton, rate, folded.frames, joint_positions(folded)};
 }
 
 /// The clip resampled to `rate` frames per second, linearly, from its first frame to at most its last. Throws
-/// Error if a rate is not positive.
+/// Error, naming the clip, if a rate is not positive, or for too many frames (see resampled_frames).
 inline PositionClip resample(const PositionClip& clip, double rate) {
   const std::size_t joints = clip.skeleton.size();
   require(clip.positions.size() == clip.frames * joints, "clip '", clip.id, "' has ", clip.positions.size(),
           " positions, expected ", clip.frames, " frames x ", joints, " joints");
-  const std::size_t frames = resampled_frames(clip.frames, clip.rate, rate);
+  const std::size_t frames = resampled_frames(clip.frames, clip.rate, rate, joints, clip.id);
   PositionClip out{clip.id, clip.skeleton, rate, frames, {}};
   out.positions.reserve(frames * joints);
   for (std::size_t f = 0; f < frames; ++f) {

@@ -68,8 +68,11 @@ inline std::string place(std::string_view name, std::size_t line) {
   return line == 0 ? std::string(name) : concat(name, ":", line);
 }
 
-/// Appends a caption. Throws Error if it has no words or no id.
+/// Appends a caption. Throws Error if it has no words, no id or more than longest_line bytes.
 inline void add_caption(CaptionFile& file, std::string_view id, std::string_view text, std::size_t line) {
+  if (text.size() > longest_line)
+    throw Error(place(file.name, line), ": clip '", id, "' has a description of ", text.size(),
+                " bytes, expected at most ", longest_line);
   require(!id.empty(), place(file.name, line), ": found no clip id for the caption '", text, "'");
   require(!split_words(text).empty(), place(file.name, line), ": clip '", id, "' has the description '", text,
           "', expected at least one word");

@@ -40,6 +40,8 @@ inline Caption caption_of_line(std::string_view line, std::string_view place) {
              stop = number_of(line.substr(last + 1));
   if (!start || !stop) return {std::string(line)};
   Caption out{std::string(trimmed(line.substr(0, line.find('#'))))};
+  require(!std::isinf(*start) && !std::isinf(*stop), place, ": found the times ", *start, " to ", *stop,
+          " s, expected finite numbers, or nan for the clip's start or end");
   const double begin = std::isnan(*start) ? 0 : *start;
   const double end = std::isnan(*stop) ? std::numeric_limits<double>::infinity() : *stop;
   if (begin == 0 && (end == 0 || std::isinf(end))) return out;
@@ -51,7 +53,7 @@ inline Caption caption_of_line(std::string_view line, std::string_view place) {
 
 /// Adds the captions of one clip's text file.
 inline void add_clip_text(CaptionFile& out, const std::string& id, const std::filesystem::path& file) {
-  const std::string name = file.string(), text = read_text(file, "text file");
+  const std::string name = file.string(), text = read_text(file, "text file", largest_list_file);
   for_each_line(text, name, [&](const TextLine& line) {
     require_utf8(line.raw, name, line.number);
     Caption caption = caption_of_line(line.text, place(name, line.number));
@@ -84,11 +86,11 @@ class TextFolders {
   /// Lists files by name and, with a slash in front, by name in lower case.
   static void list(const std::filesystem::path& folder, Files& files) {
     namespace fs = std::filesystem;
-    std::error_code problem;
+    std::error_code problem, ignored;  // of a link that leads nowhere: its reader names it
     std::vector<fs::path> found;
     fs::directory_iterator entries(folder.empty() ? fs::path(".") : folder, problem);
     for (; !problem && entries != fs::directory_iterator(); entries.increment(problem))
-      if (extension_of(entries->path()) == ".txt" && !entries->is_directory())
+      if (extension_of(entries->path()) == ".txt" && !entries->is_directory(ignored))
         found.push_back(entries->path());
     std::sort(found.begin(), found.end());
     for (const fs::path& file : found) {

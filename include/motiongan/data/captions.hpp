@@ -24,7 +24,7 @@ namespace motiongan::motion {
 inline CaptionFile read_caption_file(const std::filesystem::path& path) {
   std::error_code problem;
   if (std::filesystem::is_directory(path, problem)) return read_caption_folder(path);
-  const std::string text = read_text(path, "caption file"), extension = extension_of(path);
+  const std::string text = read_text(path, "caption file", largest_list_file), extension = extension_of(path);
   return extension == ".csv"    ? parse_caption_csv(text, path.string())
          : extension == ".json" ? parse_caption_json(text, path.string())
                                 : parse_caption_lines(text, path.string());

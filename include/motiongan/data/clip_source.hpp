@@ -148,10 +148,15 @@ inline EncodedClip encode_clip(Motion motion, const DatasetOptions& options, std
   return out;
 }
 
-/// The same, with what is known of the file.
+/// The same, with what is known of the file. Throws Error, naming the clip `id`, if it cannot be encoded.
 inline EncodedClip encode_clip(LoadedMotion loaded, const DatasetOptions& options, std::size_t stride,
-                               int root) {
-  EncodedClip out = encode_clip(std::move(loaded.motion), options, stride, root);
+                               int root, const std::string& id) {
+  EncodedClip out;
+  try {
+    out = encode_clip(std::move(loaded.motion), options, stride, root);
+  } catch (const Error& error) {
+    throw Error("clip '", id, "': ", error.what());
+  }
   out.up = loaded.up;
   out.unit_metres = loaded.unit_metres;
   out.dropped = loaded.dropped;

@@ -98,8 +98,9 @@ inline std::vector<LoadChange> agree(const std::vector<ClipSource>& sources, con
 inline std::vector<Used> encode_all(const std::vector<ClipSource>& sources, Dataset& data, int& root) {
   const DatasetOptions& o = data.options;
   std::vector<EncodedClip> clips(sources.size());
-  const std::vector<std::string> errors = errors_in_two_threads(
-      sources.size(), [&](std::size_t i) { clips[i] = encode_clip(sources[i].load({}), o, 0, -1); });
+  const std::vector<std::string> errors = errors_in_two_threads(sources.size(), [&](std::size_t i) {
+    clips[i] = encode_clip(sources[i].load({}), o, 0, -1, sources[i].id);
+  });
   require_all_read(errors, o.clips.skip_bad);
   std::vector<Used> used = choose_clips(sources, clips, errors, data);
   const std::vector<LoadChange> changes = agree(sources, used, data);
@@ -115,7 +116,8 @@ inline std::vector<Used> encode_all(const std::vector<ClipSource>& sources, Data
     if (clip.stride == data.stride && !changes[i].up && changes[i].scale == 1 &&
         (clip.root == root || (!o.root_position && o.rotation() == RootRotation::expmap)))
       return;
-    clip = encode_clip(sources[used[i].source].load(changes[i]), o, data.stride, root);
+    const ClipSource& source = sources[used[i].source];
+    clip = encode_clip(source.load(changes[i]), o, data.stride, root, source.id);
   });
   // Resampling rounds a clip's length down to whole frames, which may cost it its only window.
   std::erase_if(used, [&](const Used& u) {
@@ -324,8 +326,11 @@ inline Dataset build(const std::vector<ClipSource>& sources, const DatasetOption
   format.vocabulary = Vocabulary::from_captions(training_captions);
   for (auto* part : {&data.train, &data.test})
     for (DatasetClip& clip : *part)
-      for (const std::string& caption : clip.captions)
+      for (const std::string& caption : clip.captions) {
         clip.sentences.push_back(format.vocabulary.encode(caption));
+        if (const std::string note = word_limit_note(caption); !note.empty())
+          data.notes.push_back(concat("clip '", clip.id, "': its caption ", note));
+      }
   return data;
 }
 

@@ -21,6 +21,9 @@ namespace motiongan::motion {
 
 /// Conversion between network values and motion, and between captions and word indices.
 struct MotionFormat {
+  /// Sizes beyond any model's, which a damaged file may claim.
+  static constexpr std::size_t most_frames = 65536, most_dof = 65536, most_words = 1'000'000;
+
   PoseLayout layout;  ///< holds the skeleton
   Normalizer normalizer;
   Vocabulary vocabulary;
@@ -126,12 +129,17 @@ struct MotionFormat {
   /// Throws Error unless the members are consistent.
   void check() const {
     require(layout.skeleton().size() > 0, "a motion format has no skeleton");
+    require(layout.dof() <= most_dof, "a motion format has ", layout.dof(),
+            " pose dimensions, expected at most ", most_dof);
     require(normalizer.full_dof() == layout.dof(), "a normalizer of ", normalizer.full_dof(),
             " dimensions does not fit a pose of ", layout.dof());
     require(normalizer.kept_dof() > 0, "all ", layout.dof(), " pose dimensions are constant: nothing moves");
     require(rate > 0 && rate < 1e6, "a motion format has a rate of ", rate,
             " frames per second, expected more than 0");
-    require(frames > 0, "a motion format has windows of 0 frames, expected at least 1");
+    require(frames > 0 && frames <= most_frames, "a motion format has windows of ", frames,
+            " frames, expected 1 to ", most_frames);
+    require(vocabulary.size() <= most_words, "a motion format has ", vocabulary.size(),
+            " words, expected at most ", most_words);
     for (std::size_t i = 0; i < relative_dims.size(); ++i)
       require(relative_dims[i] < dof() && (i == 0 || relative_dims[i] > relative_dims[i - 1]),
               "relative dimension ", relative_dims[i], " is out of order or not one of the ", dof(),

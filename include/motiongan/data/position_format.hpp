@@ -47,6 +47,9 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 /// Conversion between network values and joint positions, and between class names and class indices.
 struct PositionFormat {
+  /// Sizes beyond any model's, which a damaged file may claim.
+  static constexpr std::size_t most_frames = 65536, most_dof = 65536, most_classes = 65536;
+
   PositionLayout layout;  ///< holds the skeleton
   Normalizer normalizer;
   double rate = 30;                  ///< frames per second
@@ -149,12 +152,17 @@ struct PositionFormat {
   /// Throws Error unless the members are consistent.
   void check() const {
     require(skeleton().size() > 0, "a position format has no skeleton");
+    require(layout.dof() <= most_dof, "a position format has ", layout.dof(),
+            " pose dimensions, expected at most ", most_dof);
     require(normalizer.full_dof() == layout.dof(), "a normalizer of ", normalizer.full_dof(),
             " dimensions does not fit a pose of ", layout.dof());
     require(dof() > 0, "all ", layout.dof(), " pose dimensions are constant: nothing moves");
     require(rate > 0 && rate < 1e6, "a position format has a rate of ", rate,
             " frames per second, expected more than 0");
-    require(frames > 0, "a position format has windows of 0 frames, expected at least 1");
+    require(frames > 0 && frames <= most_frames, "a position format has windows of ", frames,
+            " frames, expected 1 to ", most_frames);
+    require(classes.size() <= most_classes, "a position format has ", classes.size(),
+            " classes, expected at most ", most_classes);
     require(!classes.empty(), "a position format has no classes, expected at least one");
     std::set<std::string_view> seen;
     for (const std::string& name : classes) {

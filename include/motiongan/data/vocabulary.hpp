@@ -32,6 +32,25 @@ inline std::vector<std::string> split_words(std::string_view caption) {
   return words;
 }
 
+/// Words of a caption that models use, the first ones: an encoder takes a step for each.
+inline constexpr std::size_t most_caption_words = 256;
+
+/// The words of a caption that models use.
+inline std::vector<std::string> used_words(std::string_view caption) {
+  std::vector<std::string> words = split_words(caption);
+  if (words.size() > most_caption_words) words.resize(most_caption_words);
+  return words;
+}
+
+/// "has 300 words, of which the first 256 are used"; empty if all are used.
+inline std::string word_limit_note(std::string_view caption) {
+  if (caption.size() < 2 * most_caption_words) return {};  // a word is at least a letter and a blank
+  const std::size_t words = split_words(caption).size();
+  return words <= most_caption_words
+             ? std::string()
+             : concat("has ", words, " words, of which the first ", most_caption_words, " are used");
+}
+
 /// Words in a fixed order; index 0 is `<unk>`, which stands for every unknown word.
 class Vocabulary {
  public:
@@ -52,11 +71,11 @@ class Vocabulary {
     }
   }
 
-  /// All words of the captions, sorted bytewise.
+  /// All words of the captions that models use, sorted bytewise.
   static Vocabulary from_captions(std::span<const std::string> captions) {
     std::set<std::string> sorted;
     for (const std::string& caption : captions)
-      for (std::string& word : split_words(caption)) sorted.insert(std::move(word));
+      for (std::string& word : used_words(caption)) sorted.insert(std::move(word));
     std::vector<std::string> words{unknown};
     words.insert(words.end(), sorted.begin(), sorted.end());
     return Vocabulary(std::move(words));
@@ -71,19 +90,19 @@ class Vocabulary {
     return at == index_.end() ? 0 : at->second;
   }
 
-  /// The caption as word indices. Throws Error if it has no word.
+  /// The caption as word indices, at most most_caption_words. Throws Error if it has no word.
   std::vector<int> encode(std::string_view caption) const {
     std::vector<int> out;
-    for (const std::string& word : split_words(caption)) out.push_back(find(word));
+    for (const std::string& word : used_words(caption)) out.push_back(find(word));
     require(!out.empty(), "the caption '", caption,
             "' has no words; describe the motion in letters or digits");
     return out;
   }
 
-  /// The caption's words that are not in the vocabulary, to warn about.
+  /// The caption's words, of those that models use, that are not in the vocabulary, to warn about.
   std::vector<std::string> unknown_words(std::string_view caption) const {
     std::vector<std::string> out;
-    for (std::string& word : split_words(caption))
+    for (std::string& word : used_words(caption))
       if (find(word) == 0) out.push_back(std::move(word));
     return out;
   }

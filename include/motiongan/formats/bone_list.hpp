@@ -53,7 +53,7 @@ inline Skeleton parse_bone_list(std::string_view text, std::string_view name) {
 
 /// As parse_bone_list, from a file. Throws Error also if the file cannot be read.
 inline Skeleton read_bone_list(const std::filesystem::path& path) {
-  return parse_bone_list(read_text(path, "bone list"), path.string());
+  return parse_bone_list(read_text(path, "bone list", largest_list_file), path.string());
 }
 
 /// Writes joints and parents as read_bone_list reads them; offsets and channels are not stored. Throws Error

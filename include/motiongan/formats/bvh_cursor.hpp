@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "motiongan/core/error.hpp"
+#include "motiongan/formats/short_decimal.hpp"
 
 namespace motiongan::motion {
 
@@ -187,8 +188,15 @@ class Cursor {
     const char* start = text_.data() + at_;
     if (start != end && *start == '+' && start + 1 != end && start[1] != '-') ++start;
     double value = 0;
+    const auto ends_word = [end](const char* c) {
+      return c == end || is_blank(*c) || is_line_end(*c) || *c == '{' || *c == '}';
+    };
+    if (const char* stop = read_short_decimal(start, end, value); stop != nullptr && ends_word(stop)) {
+      at_ = static_cast<std::size_t>(stop - text_.data());
+      return value;
+    }
     const auto [stop, error] = std::from_chars(start, end, value);
-    const bool whole = stop == end || is_blank(*stop) || is_line_end(*stop) || *stop == '{' || *stop == '}';
+    const bool whole = ends_word(stop);
     if (error == std::errc() && whole && std::isfinite(value)) {
       at_ = static_cast<std::size_t>(stop - text_.data());
       return value;

@@ -19,7 +19,7 @@ namespace motiongan::motion {
 /// A BVH file written in pieces with bounded memory: byte for byte the file that write_bvh writes for the
 /// pieces joined. BVH stores the number of frames in its header, so it must be known in advance.
 ///
-/// The file is written next to `path` (as `path.tmp`) and renamed by finish(). Without finish() nothing is
+/// The file is written next to `path` and renamed by finish(). Without finish() nothing is
 /// left behind, and an existing file at `path` is untouched.
 class BvhStreamWriter {
  public:

@@ -22,8 +22,8 @@ inline std::string extension_of(const std::filesystem::path& file) {
 
 /// All files with one of the extensions (".bvh", in any case) in a folder and its subfolders, sorted, except
 /// those in `without`; or the file itself. Hidden files and folders, which start with a dot, are left out; so
-/// are the `._name` files that macOS puts next to files. Dead links and empty files are listed, for a reader
-/// to name them. Throws Error if there are none.
+/// are the `._name` files that macOS puts next to files. Dead links, pipes and empty files are listed, for a
+/// reader to name them. Throws Error if there are none.
 inline std::vector<std::filesystem::path> find_clip_files(
     const std::filesystem::path& where, const std::vector<std::string_view>& extensions = {".bvh"},
     const std::vector<std::filesystem::path>& without = {}) {

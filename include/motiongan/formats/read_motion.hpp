@@ -108,11 +108,21 @@ inline void read_rotations(const std::filesystem::path& file, const ClipOptions&
   }
 }
 
+/// Throws Error for a clip of more than 11 days: its rate is wrong, and resampling it would not end.
+inline void check_duration(const std::filesystem::path& file, std::size_t frames, double rate) {
+  constexpr double longest = 1e6;
+  const double seconds = frames < 2 ? 0 : static_cast<double>(frames - 1) / rate;
+  require(seconds <= longest, file.string(), ": ", frames, " frames at ", rate, " per second (", 1 / rate,
+          " s each) last ", seconds, " s, expected at most ", longest,
+          " s; is the frame time in another unit? --fps gives the rate");
+}
+
 /// Takes out.motion, as it is in the file, to the form that read_motion gives; `posed` is the number of posed
 /// frames at its start if that is known.
 inline void finish(const std::filesystem::path& file, const ClipOptions& options, LoadedMotion& out,
                    std::optional<std::size_t> posed) {
   if (options.fps > 0) out.motion.rate = options.fps;
+  check_duration(file, out.motion.frames, out.motion.rate);
   out.unit_metres /= options.scale;
   out.dropped = posed ? drop_frames(out.motion, *posed) : drop_first_frames(out.motion, options.first_frame);
   if (options.scale != 1) out.motion = scaled(std::move(out.motion), options.scale);
@@ -157,6 +167,7 @@ inline LoadedPositions read_positions(const std::filesystem::path& file, const C
   LoadedPositions out;
   out.clip = read_position_file(file, options.bones, options.fps > 0 ? options.fps : rate);
   if (options.fps > 0) out.clip.rate = options.fps;
+  read_motion_detail::check_duration(file, out.clip.frames, out.clip.rate);
   out.clip = read_motion_detail::depth_first(std::move(out.clip));
   out.up = options.up;
   if (!out.up) out.up = detect_up_axis(out.clip.skeleton, out.clip.positions);
@@ -221,6 +232,7 @@ inline InspectedMotion inspect_motion(const std::filesystem::path& file, const C
   out.loaded.unit_metres = options.unit_metres;
   out.loaded.notes = std::move(clip.notes);
   out.loaded.motion = to_motion(clip);
+  read_motion_detail::check_duration(file, all, options.fps > 0 ? options.fps : out.loaded.motion.rate);
   const bool automatic = options.first_frame == FirstFrame::automatic && !sample.empty();
   const std::size_t posed = automatic ? t_pose_frames(out.loaded.motion, 2) : 0;
   read_motion_detail::finish(file, options, out.loaded, automatic ? std::optional(posed) : std::nullopt);
@@ -240,6 +252,8 @@ inline std::vector<std::filesystem::path> find_motion_files(
     const std::string name = file.filename().string();
     if (name == "shape.npz" || name.ends_with("_shape.npz")) return true;  // AMASS's body shapes
     if (extension_of(file) != ".csv") return false;
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(file, ignored)) return true;  // opening a pipe would wait
     std::ifstream in(file, std::ios::binary);
     std::string head(65536, '\0');
     in.read(head.data(), static_cast<std::streamsize>(head.size()));

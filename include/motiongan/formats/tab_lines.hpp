@@ -45,6 +45,9 @@ inline std::string_view take_line(std::string_view& text) {
   return line;
 }
 
+/// Bytes of a line or of a caption: a longer one is no text that a person wrote.
+inline constexpr std::size_t longest_line = 65536;
+
 /// One line of a text file.
 struct TextLine {
   std::size_t number = 0;  ///< from 1
@@ -53,12 +56,14 @@ struct TextLine {
 };
 
 /// Calls read(TextLine) for each line of `text`, skipping blank lines, lines that start with #, and a byte
-/// order mark. Throws Error, starting with `name`, for UTF-16.
+/// order mark. Throws Error, starting with `name`, for UTF-16 and for a line of more than longest_line.
 template <class Read>
 void for_each_line(std::string_view text, std::string_view name, Read&& read) {
   text = without_byte_order_mark(text, name);
   for (std::size_t number = 1; !text.empty(); ++number) {
     const std::string_view raw = take_line(text), line = trimmed(raw);
+    require(raw.size() <= longest_line, name, ":", number, ": found a line of ", raw.size(),
+            " bytes, expected at most ", longest_line, "; is it the right file?");
     if (!line.empty() && line.front() != '#') read(TextLine{number, line, raw});
   }
 }

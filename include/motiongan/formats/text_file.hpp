@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -25,15 +26,39 @@ inline std::string why_missing(const std::filesystem::path& path) {
   return "does not exist";
 }
 
-/// The bytes of a file. `kind` is what messages call it, such as "BVH file". Throws Error if it cannot be
-/// read.
-inline std::string read_text(const std::filesystem::path& path, std::string_view kind) {
+/// Bytes that no file of motion has, and no list of captions, labels or joints: larger ones are refused
+/// before they are read.
+inline constexpr std::uint64_t largest_text_file = std::uint64_t{4} << 30,
+                               largest_list_file = std::uint64_t{256} << 20;
+
+/// Throws Error unless `path` leads to a regular file: opening a pipe or reading a device might never end.
+/// `kind` is what messages call it, such as "BVH file".
+inline void require_regular_file(const std::filesystem::path& path, std::string_view kind) {
+  namespace fs = std::filesystem;
   std::error_code problem;
-  if (!std::filesystem::exists(path, problem)) throw Error(kind, " ", path.string(), " ", why_missing(path));
-  require(!std::filesystem::is_directory(path, problem), path.string(), " is a folder, expected a ", kind);
+  const fs::file_type type = fs::status(path, problem).type();
+  if (type == fs::file_type::regular) return;
+  if (problem || type == fs::file_type::not_found)
+    throw Error(kind, " ", path.string(), " ", why_missing(path));
+  require(type != fs::file_type::directory, path.string(), " is a folder, expected a ", kind);
+  throw Error(kind, " ", path.string(), " is ",
+              type == fs::file_type::fifo     ? "a named pipe"
+              : type == fs::file_type::socket ? "a socket"
+                                              : "a device",
+              ", expected a regular file; copy its contents to one");
+}
+
+/// The bytes of a file. `kind` is what messages call it, such as "BVH file". Throws Error if it cannot be
+/// read, is not a regular file, or has more than `most` bytes.
+inline std::string read_text(const std::filesystem::path& path, std::string_view kind,
+                             std::uint64_t most = largest_text_file) {
+  require_regular_file(path, kind);
   std::ifstream in(path, std::ios::binary | std::ios::ate);
   require(in.good(), kind, " ", path.string(), " cannot be opened; is it readable?");
-  std::string text(static_cast<std::size_t>(std::max<std::streamoff>(in.tellg(), 0)), '\0');
+  const auto size = static_cast<std::uint64_t>(std::max<std::streamoff>(in.tellg(), 0));
+  require(size <= most, kind, " ", path.string(), " has ", size, " bytes, expected at most ", most,
+          "; is it the right file?");
+  std::string text(size, '\0');
   in.seekg(0);
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   require(static_cast<std::size_t>(in.gcount()) == text.size(), kind, " ", path.string(),

@@ -1,6 +1,7 @@
 // Atomic file writes: the complete file appears, or nothing changes.
 #pragma once
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -15,13 +16,26 @@
 
 namespace motiongan::io {
 
-/// Writes to `path.tmp`; commit() flushes it to disk and renames it to `path`. Without commit() the
-/// destructor removes it and leaves any file at `path` untouched. Throws Error if a system call fails.
+/// Writes to a new file beside `path`, called `path.PID-N.tmp`; commit() flushes it to disk and renames it to
+/// `path`. Without commit() the destructor removes it and leaves any file at `path` untouched. A device or a
+/// pipe (/dev/stdout) is written directly. Throws Error if a system call fails.
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path path) : path_(std::move(path)), beside_(path_) {
-    beside_ += ".tmp";
-    file_ = ::open(beside_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    struct stat found {};
+    direct_ = path_.native().starts_with("/dev/") ||
+              (::stat(path_.c_str(), &found) == 0 && !S_ISREG(found.st_mode) && !S_ISDIR(found.st_mode));
+    if (direct_) {
+      file_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+    } else {
+      // Never an existing file and never through a link, so that nobody can plant one. Files that a killed
+      // process left, and other hosts' processes of the same number, have taken some names.
+      for (int n = 0; n < 1000 && (n == 0 || (file_ < 0 && errno == EEXIST)); ++n) {
+        beside_ = path_;
+        beside_ += concat(".", ::getpid(), "-", n, ".tmp");
+        file_ = ::open(beside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+      }
+    }
     check(file_ >= 0, "open");
   }
   AtomicFile(const AtomicFile&) = delete;
@@ -29,7 +43,7 @@ class AtomicFile {
   ~AtomicFile() {
     if (file_ < 0) return;
     ::close(file_);
-    ::unlink(beside_.c_str());
+    remove();
   }
 
   void write(const void* bytes, std::size_t size) {
@@ -49,18 +63,18 @@ class AtomicFile {
 
   /// Renames the file into place: from now on it is at `path`.
   void commit(Sync sync = Sync::yes) {
-    if (sync == Sync::yes) check(::fsync(file_) == 0, "flush");
+    if (sync == Sync::yes) flush();
     const int file = std::exchange(file_, -1);
     const bool closed = ::close(file) == 0;
-    const bool renamed = closed && ::rename(beside_.c_str(), path_.c_str()) == 0;
+    const bool renamed = closed && (direct_ || ::rename(beside_.c_str(), path_.c_str()) == 0);
     if (!renamed) {
       const int error = errno;
-      ::unlink(beside_.c_str());
+      remove();
       errno = error;
       check(false, closed ? "rename into place" : "close");
     }
     // The rename is durable only once the folder is synced; if that fails, the file is still complete.
-    if (sync == Sync::no) return;
+    if (sync == Sync::no || direct_) return;
     const std::filesystem::path folder = path_.has_parent_path() ? path_.parent_path() : ".";
     const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (handle >= 0) {
@@ -69,15 +83,30 @@ class AtomicFile {
     }
   }
 
+  /// Waits until what was written is on disk; commit() does so too.
+  void flush() {
+    if (!direct_) check(::fsync(file_) == 0, "flush");
+  }
+
  private:
   void check(bool done, const char* what) const {
     if (!done)
       throw Error("cannot ", what, " ", beside_.string(), ": ", std::strerror(errno),
                   "; does the folder exist, is it writable, and is there free space?");
   }
+  void remove() const {
+    if (!direct_) ::unlink(beside_.c_str());
+  }
 
   std::filesystem::path path_, beside_;
+  bool direct_ = false;
   int file_ = -1;
 };
+
+/// Whether `name` is what AtomicFile calls its file beside `target`: left by a process that was killed.
+inline bool is_left_over(std::string_view name, std::string_view target) {
+  return name.size() > target.size() + 5 && name.starts_with(target) && name[target.size()] == '.' &&
+         name.ends_with(".tmp");
+}
 
 }  // namespace motiongan::io

@@ -61,10 +61,11 @@ inline void field_from_json(const Field& field, const nlohmann::json& json, cons
       if (json.is_boolean()) *b = json.get<bool>();
     }
     void operator()(std::size_t* n) const { *n = count(json); }
-    void operator()(double* x) const {
-      expect(json.is_number(), "a number");
-      *x = json.get<double>();
+    double number(const nlohmann::json& value, const char* expected) const {
+      expect(value.is_number() && std::isfinite(value.get<double>()), expected);
+      return value.get<double>();
     }
+    void operator()(double* x) const { *x = number(json, "a finite number"); }
     void operator()(std::string* s) const {
       expect(json.is_string(), "a string");
       *s = json.get<std::string>();
@@ -85,9 +86,9 @@ inline void field_from_json(const Field& field, const nlohmann::json& json, cons
       expect(json.is_array(), "pairs of an iteration and a value");
       stages->clear();
       for (const nlohmann::json& stage : json) {
-        expect(stage.is_array() && stage.size() == 2 && stage[1].is_number(),
-               "pairs of an iteration and a value");
-        stages->push_back({count(stage[0]), stage[1].get<double>()});
+        const char* const pair = "pairs of an iteration and a value";
+        expect(stage.is_array() && stage.size() == 2, pair);
+        stages->push_back({count(stage[0]), number(stage[1], pair)});
       }
     }
     void operator()(const EnumAccess& e) const {

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "atomic_file.hpp"
+#include "checksum.hpp"
 #include "motiongan/core/error.hpp"
 #include "safetensors_header.hpp"
 
@@ -130,12 +131,23 @@ class SafeTensors {
   std::map<std::string, std::string> metadata;
 
   /// Reads a file. Throws Error, naming the file and the problem, unless it conforms to the format in every
-  /// respect. Sizes claimed by the header are checked before any memory is allocated for them.
+  /// respect and, if write() made it, its checksum is right. Sizes claimed by the header are checked before
+  /// any memory is allocated for them.
   static SafeTensors read(const std::filesystem::path& path);
 
-  /// Writes a file atomically, with the tensors sorted by name: equal contents give equal bytes. Throws Error
-  /// if a tensor's data does not match its type and shape, a name is not UTF-8, or writing fails.
-  void write(const std::filesystem::path& path) const;
+  /// Writes a file atomically, with the tensors sorted by name and a checksum as "crc32" in the metadata of
+  /// the file: equal contents give equal bytes. Throws Error if a tensor's data does not match its type and
+  /// shape, a name is not UTF-8, or writing fails.
+  void write(const std::filesystem::path& path) const {
+    AtomicFile file(path);
+    write_to(file, path.string());
+    file.commit();
+  }
+  /// Writes to a file that the caller commits; `where` names it in errors.
+  void write_to(AtomicFile& file, const std::string& where) const;
+
+  /// CRC-32 of all names, types, shapes, data and metadata, whatever their order in the file.
+  std::string checksum() const;
 
   /// The tensor called `name`. Throws Error if there is none.
   const SafeTensor& at(const std::string& name) const {
@@ -183,11 +195,28 @@ inline SafeTensors SafeTensors::read(const std::filesystem::path& path) {
     file.seekg(static_cast<std::streamoff>(data_begin + entry.offsets[0]));
     fetch(tensor.data.data(), tensor.data.size());
   }
+  // Files of earlier versions and of other programs have no checksum.
+  if (const auto stored = content.metadata.extract("crc32"); !stored.empty())
+    require(stored.mapped() == content.checksum(), where, ": the file is damaged: its checksum is ",
+            content.checksum(), ", it was ", stored.mapped(),
+            " when it was written; use a copy, or an earlier save (if another program changed the file on "
+            "purpose, remove \"crc32\" from its metadata)");
   return content;
 }
 
-inline void SafeTensors::write(const std::filesystem::path& path) const {
-  const std::string where = path.string();
+inline std::string SafeTensors::checksum() const {
+  Checksum sum;
+  for (const auto& [key, value] : metadata) sum.add(key), sum.add(value);
+  for (const auto& [name, tensor] : tensors) {
+    sum.add(name);
+    sum.add(tensor.dtype);
+    sum.add(shape_text(tensor.shape));
+    sum.add(tensor.data.data(), tensor.data.size());
+  }
+  return sum.text();
+}
+
+inline void SafeTensors::write_to(AtomicFile& file, const std::string& where) const {
   std::string text = "{";
   const auto add = [&](const std::string& name, const std::string& value) {
     try {
@@ -196,14 +225,13 @@ inline void SafeTensors::write(const std::filesystem::path& path) const {
       throw Error(where, ": the name of a tensor is not UTF-8: ", error.what());
     }
   };
-  if (!metadata.empty()) {
-    nlohmann::json values;
-    for (const auto& [key, value] : metadata) values[key] = value;
-    try {
-      add("__metadata__", values.dump());
-    } catch (const nlohmann::json::exception& error) {
-      throw Error(where, ": the metadata is not UTF-8: ", error.what());
-    }
+  nlohmann::json values;
+  for (const auto& [key, value] : metadata) values[key] = value;
+  values["crc32"] = checksum();
+  try {
+    add("__metadata__", values.dump());
+  } catch (const nlohmann::json::exception& error) {
+    throw Error(where, ": the metadata is not UTF-8: ", error.what());
   }
   std::size_t at = 0;
   for (const auto& [name, tensor] : tensors) {
@@ -222,12 +250,10 @@ inline void SafeTensors::write(const std::filesystem::path& path) const {
   text += "}";
   text.resize((text.size() + 7) / 8 * 8, ' ');  // aligns the data to 8 bytes
 
-  AtomicFile file(path);
   const std::uint64_t length = text.size();
   file.write(&length, sizeof(length));
   file.write(text);
   for (const auto& [name, tensor] : tensors) file.write(tensor.data.data(), tensor.data.size());
-  file.commit();
 }
 
 }  // namespace motiongan::io

@@ -38,12 +38,15 @@ inline std::size_t tensor_bytes(const std::string& dtype, const std::vector<std:
   require(bytes > 0, where, ": unknown type \"", dtype,
           "\", expected one of F64 F32 F16 BF16 I64 I32 I16 I8 U64 U32 U16 U8 BOOL");
   for (const std::size_t n : shape)
-    require(!__builtin_mul_overflow(bytes, n, &bytes), where, ": a tensor of shape ", shape_text(shape),
+    require(!__builtin_mul_overflow(bytes, n, &bytes), where, ": a tensor of shape ", shape,
             " has more bytes than 64 bits can count");
   return bytes;
 }
 
 struct SafeTensorsHeader {
+  /// Far beyond any model: a header with more would cost much time and memory for its few bytes.
+  static constexpr std::size_t most_dimensions = 16, most_entries = 100'000;
+
   struct Entry {
     std::string dtype;
     std::vector<std::size_t> shape;
@@ -70,6 +73,8 @@ class SafeTensorsHeaderReader : public nlohmann::json_sax<nlohmann::json> {
 
   bool number_unsigned(number_unsigned_t value) override {
     if (!in_array_) return refuse("the number " + std::to_string(value));
+    expect(array_->size() < SafeTensorsHeader::most_dimensions, ": \"", field_, "\" has more than ",
+           SafeTensorsHeader::most_dimensions, " numbers, the most that are read");
     array_->push_back(value);
     return true;
   }
@@ -95,13 +100,17 @@ class SafeTensorsHeaderReader : public nlohmann::json_sax<nlohmann::json> {
   bool key(string_t& name) override {
     if (depth_ == 1) {
       require(!has_seen(names_seen_, name), where_, ": the name \"", name, "\" appears twice in the header");
+      require(names_seen_.size() <= SafeTensorsHeader::most_entries, where_, ": the header has more than ",
+              SafeTensorsHeader::most_entries, " tensors, the most that are read");
       name_ = name;
       in_metadata_ = name == "__metadata__";
       if (!in_metadata_) entry_ = &header_.entries[name];
     } else {
-      require(!has_seen(fields_seen_, name), where(), ": \"", name, "\" appears twice");
-      require(in_metadata_ || name == "dtype" || name == "shape" || name == "data_offsets", where(),
-              ": unknown field \"", name, "\", expected dtype, shape and data_offsets");
+      expect(!has_seen(fields_seen_, name), ": \"", name, "\" appears twice");
+      expect(in_metadata_ || name == "dtype" || name == "shape" || name == "data_offsets",
+             ": unknown field \"", name, "\", expected dtype, shape and data_offsets");
+      expect(fields_seen_.size() <= SafeTensorsHeader::most_entries, " has more than ",
+             SafeTensorsHeader::most_entries, " members, the most that are read");
       field_ = name;
     }
     return true;
@@ -109,9 +118,8 @@ class SafeTensorsHeaderReader : public nlohmann::json_sax<nlohmann::json> {
 
   bool end_object() override {
     if (depth_ == 2 && !in_metadata_)
-      require(fields_seen_.size() == 3, where(),
-              ": an entry needs dtype, shape and data_offsets, this one has ", fields_seen_.size(),
-              " of them");
+      expect(fields_seen_.size() == 3, ": an entry needs dtype, shape and data_offsets, this one has ",
+             fields_seen_.size(), " of them");
     --depth_;
     field_.clear();
     return true;
@@ -144,6 +152,12 @@ class SafeTensorsHeaderReader : public nlohmann::json_sax<nlohmann::json> {
     return where_ + ": " + (in_metadata_ ? "__metadata__" : "tensor \"" + name_ + "\"");
   }
 
+  /// As require(), starting with where(), which is made only for a message.
+  template <class... Parts>
+  void expect(bool condition, const Parts&... parts) const {
+    if (!condition) throw Error(where(), parts...);
+  }
+
   /// Always throws; returns bool like the parser's event handlers.
   bool refuse(const std::string& found) const {
     if (depth_ == 0) throw Error(where_, ": the header is ", found, ", expected an object of tensors");
@@ -167,16 +181,19 @@ class SafeTensorsHeaderReader : public nlohmann::json_sax<nlohmann::json> {
 inline void check_layout(const SafeTensorsHeader& header, std::size_t data_size, const std::string& where) {
   std::vector<std::pair<std::pair<std::size_t, std::size_t>, const std::string*>> spans;
   for (const auto& [name, entry] : header.entries) {
-    const std::string tensor = concat(where, ": tensor \"", name, "\"");
-    require(entry.offsets.size() == 2, tensor, ": data_offsets has ", entry.offsets.size(),
-            " numbers, expected begin and end");
+    const auto expect = [&, &tensor = name](bool condition, const auto&... parts) {
+      if (!condition) throw Error(where, ": tensor \"", tensor, "\": ", parts...);
+    };
+    expect(entry.offsets.size() == 2, "data_offsets has ", entry.offsets.size(),
+           " numbers, expected begin and end");
     const std::size_t begin = entry.offsets[0], end = entry.offsets[1];
-    const std::size_t bytes = tensor_bytes(entry.dtype, entry.shape, tensor);
-    require(begin <= end, tensor, ": data_offsets ", shape_text(entry.offsets), " end before they begin");
-    require(end <= data_size, tensor, ": its data ends at byte ", end, ", but only ", data_size,
-            " bytes follow the header; the file was cut short or its header is wrong");
-    require(end - begin == bytes, tensor, ": ", entry.dtype, " of shape ", shape_text(entry.shape), " takes ",
-            bytes, " bytes, data_offsets ", shape_text(entry.offsets), " give it ", end - begin);
+    const std::size_t bytes =
+        tensor_bytes(entry.dtype, entry.shape, concat(where, ": tensor \"", name, "\""));
+    expect(begin <= end, "data_offsets ", entry.offsets, " end before they begin");
+    expect(end <= data_size, "its data ends at byte ", end, ", but only ", data_size,
+           " bytes follow the header; the file was cut short or its header is wrong");
+    expect(end - begin == bytes, entry.dtype, " of shape ", entry.shape, " takes ", bytes,
+           " bytes, data_offsets ", entry.offsets, " give it ", end - begin);
     spans.push_back({{begin, end}, &name});
   }
   std::sort(spans.begin(), spans.end());

@@ -11,6 +11,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "motiongan/io/fields_json.hpp"
 #include "motiongan/io/safetensors.hpp"
@@ -47,6 +48,15 @@ void describe_model(const Model& model, io::SafeTensors& file) {
     if (kind == Model::kind_of(options)) file.metadata["motiongan_model"] = name;
   file.metadata["options"] = io::fields_to_text(fields_of(options));
   file.metadata["format"] = Model::write_format(model.format());
+}
+
+/// The metadata of a model file, from those of a checkpoint.
+inline std::map<std::string, std::string> model_metadata(const io::SafeTensors& checkpoint) {
+  std::map<std::string, std::string> out;
+  for (const char* key : {"motiongan_model", "options", "format"})
+    if (const auto found = checkpoint.metadata.find(key); found != checkpoint.metadata.end())
+      out.insert(*found);
+  return out;
 }
 
 /// Writes the weights (PyTorch's names and shapes) and the metadata as one safetensors file.
@@ -94,6 +104,14 @@ typename Model::Format model_format(const io::SafeTensors& file, const std::stri
   return Model::read_format(text->second, where);
 }
 
+/// Bounds the parameters of a model whose options are read from `file`, which may claim any size. Room is
+/// left for load_parameters() to name the tensor that is missing or has another shape.
+inline std::size_t most_parameters(const io::SafeTensors& file) {
+  std::size_t n = 0;
+  for (const auto& [name, tensor] : file.tensors) n += tensor.count();
+  return 2 * n + 1'000'000;
+}
+
 /// Loads a file that save_model() wrote, or the model in a checkpoint. Throws Error, naming the file and the
 /// problem, for any other file.
 template <class Model>
@@ -101,9 +119,11 @@ Model load_model(const Context& context, const std::filesystem::path& path) {
   const std::string where = path.string();
   const io::SafeTensors file = io::SafeTensors::read(path);
   const auto options = model_options<Model>(file, where);
-  Model model(context, model_format<Model>(file, where), options);
-  io::load_parameters(named_parameters(model), file, where,
-                      is_checkpoint(file) ? std::string(Model::part_name) + "." : "");
+  auto format = model_format<Model>(file, where);
+  const std::string prefix = is_checkpoint(file) ? std::string(Model::part_name) + "." : "";
+  const ParameterLimit limit(most_parameters(file), where);
+  Model model(context, std::move(format), options);
+  io::load_parameters(named_parameters(model), file, where, prefix);
   return model;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -122,6 +123,21 @@ inline std::size_t resampled_frames(std::size_t frames, double from, double to) 
   return static_cast<std::size_t>(count) + 1;
 }
 
+/// The same for a clip of `joints` joints that is resampled in memory. Throws Error, starting with `name` if
+/// that is given, also if it would become both longer than it is and larger than 50 million joint positions:
+/// a clip whose frame time is wrong by a factor of a million lasts for years.
+inline std::size_t resampled_frames(std::size_t frames, double from, double to, std::size_t joints,
+                                    std::string_view name) {
+  constexpr double most = 5e7;
+  const auto [n, j] = std::pair{static_cast<double>(frames), static_cast<double>(joints)};
+  const double made = n * to / from;
+  require(!(made > n && made * j > most), name, name.empty() ? "" : ": ", "resampling ", frames,
+          " frames from ", from, " to ", to, " per second (", n / from, " s) would make ", made,
+          " frames of ", joints, " joints, expected at most ", std::floor(most / std::max(j, 1.0)),
+          "; is the clip's frame time right? --fps gives its rate");
+  return resampled_frames(frames, from, to);
+}
+
 /// Where output frame `f` lies in a motion of `frames` frames; `step` is the number of source frames per
 /// output frame.
 inline BetweenFrames between_frames(std::size_t f, double step, std::size_t frames) {
@@ -147,9 +163,9 @@ inline void append_between(const Motion& motion, const BetweenFrames& at, Motion
 }
 
 /// The motion resampled to `rate` frames per second: rotations by slerp, positions linearly. The output
-/// frames lie at 0, 1/rate, 2/rate, ... seconds, none after the last source frame. Throws Error if a rate is
-/// not positive.
-inline Motion resample(const Motion& motion, double rate) {
+/// frames lie at 0, 1/rate, 2/rate, ... seconds, none after the last source frame. `name` is the clip's, for
+/// messages. Throws Error if a rate is not positive, or for too many frames (see resampled_frames).
+inline Motion resample(const Motion& motion, double rate, std::string_view name = {}) {
   check_motion(motion);
   require(std::isfinite(rate) && rate > 0, "cannot resample to ", rate,
           " frames per second, expected more than 0");
@@ -159,7 +175,7 @@ inline Motion resample(const Motion& motion, double rate) {
     out.rate = rate;
     return out;
   }
-  const std::size_t frames = resampled_frames(motion.frames, motion.rate, rate);
+  const std::size_t frames = resampled_frames(motion.frames, motion.rate, rate, motion.skeleton.size(), name);
   out.skeleton = motion.skeleton;
   out.rate = rate;
   out.rotations.reserve(frames * motion.skeleton.size());

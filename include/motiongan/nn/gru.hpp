@@ -15,10 +15,11 @@ struct Gru {
   Gru() = default;
   Gru(Initializer& init, std::size_t in, std::size_t k) {
     const double bound = 1 / std::sqrt(static_cast<double>(k));
-    weight_ih = init.uniform({3 * k, in}, bound);
-    weight_hh = init.uniform({3 * k, k}, bound);
-    bias_ih = init.uniform({3 * k}, bound);
-    bias_hh = init.uniform({3 * k}, bound);
+    const std::size_t gates = element_count({3, k});
+    weight_ih = init.uniform({gates, in}, bound);
+    weight_hh = init.uniform({gates, k}, bound);
+    bias_ih = init.uniform({gates}, bound);
+    bias_hh = init.uniform({gates}, bound);
   }
 
   std::size_t hidden() const { return weight_hh.dim(1); }

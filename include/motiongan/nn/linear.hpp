@@ -47,10 +47,12 @@ struct Conv1d {
 /// Down(conv(x)) for a convolution with 3 taps at half the cost: the mean of two neighbouring outputs is the
 /// convolution of the means of neighbouring inputs. `pairs` is pair_means(x) of x [frames, B, in]; the result
 /// is [frames / 2, B, out], with optional residual and ReLU (extras.bias is ignored). Throws Error unless
-/// there are 3 taps.
+/// there are 3 taps and `pairs` are of that many frames.
 inline Var conv_down(const Var& pairs, const Var& weight, const Var& bias, std::size_t frames,
                      const Conv1dEpilogue& extras = {}) {
   require(weight.dim(0) == 3, "conv_down: weight has ", weight.dim(0), " taps, expected 3");
+  require(pairs.dim(0) == 2 * (frames / 2) + 1, "conv_down: pairs ", pairs.shape(), " of ", frames,
+          " frames, expected ", 2 * (frames / 2) + 1);
   const int half = static_cast<int>(frames / 2);
   return conv1d(pairs, weight, {0, half + 1, 1}, frames / 2, false,
                 {.bias = bias, .residual = extras.residual, .relu = extras.relu});

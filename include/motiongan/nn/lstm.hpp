@@ -31,9 +31,10 @@ struct Lstm {
   Lstm() = default;
   Lstm(Initializer& init, std::size_t in, std::size_t k, std::size_t layer_count) {
     const double bound = 1 / std::sqrt(static_cast<double>(k));
+    const std::size_t gates = element_count({4, k});
     for (std::size_t l = 0; l < layer_count; ++l) {
-      const Var ih = init.uniform({4 * k, l == 0 ? in : k}, bound), hh = init.uniform({4 * k, k}, bound);
-      const Var bias_ih = init.uniform({4 * k}, bound), bias_hh = init.uniform({4 * k}, bound);
+      const Var ih = init.uniform({gates, l == 0 ? in : k}, bound), hh = init.uniform({gates, k}, bound);
+      const Var bias_ih = init.uniform({gates}, bound), bias_hh = init.uniform({gates}, bound);
       layers.push_back({ih, hh, bias_ih, bias_hh});
     }
   }

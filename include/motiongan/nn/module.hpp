@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "motiongan/autograd/grad.hpp"
@@ -21,6 +22,42 @@ struct NamedParameter {
   ParameterLayout layout = ParameterLayout::plain;
 };
 
+/// While an object of this class exists, this thread creates parameters of at most `most` elements in all:
+/// before one more is allocated, Error is thrown, starting with `where`, the file that the options are from.
+class ParameterLimit {
+ public:
+  ParameterLimit(std::size_t most, std::string where)
+      : left_(most), where_(std::move(where)), outer_(std::exchange(current(), this)) {}
+  ParameterLimit(const ParameterLimit&) = delete;
+  ParameterLimit& operator=(const ParameterLimit&) = delete;
+  ~ParameterLimit() { current() = outer_; }
+
+  /// Counts a parameter that is about to be created.
+  static void count(const Shape& shape) {
+    if (current() != nullptr) current()->take(shape);
+  }
+
+ private:
+  static ParameterLimit*& current() {
+    thread_local ParameterLimit* limit = nullptr;
+    return limit;
+  }
+
+  void take(const Shape& shape) {
+    const std::size_t before = left_;
+    for (std::size_t elements = 1; const std::size_t n : shape)
+      require(!__builtin_mul_overflow(elements, n, &elements) && elements <= before, where_,
+              ": the model's options ask for a parameter of shape ", shape,
+              ", far more numbers than the file ",
+              "holds; the file is damaged, or its options are those of another model");
+    left_ -= element_count(shape);
+  }
+
+  std::size_t left_;
+  std::string where_;
+  ParameterLimit* outer_;
+};
+
 /// Creates parameters with random initial values. The random key of each contains its number in order of
 /// creation: equal seeds and options give equal weights.
 class Initializer {
@@ -29,25 +66,39 @@ class Initializer {
 
   const Context& context() const { return context_; }
 
-  /// Uniform in [-bound, bound].
+  /// Uniform in [-bound, bound]. Throws Error if the bound is not finite: that of a layer without inputs.
   Var uniform(Shape shape, double bound) {
-    std::vector<float> values(element_count(shape));
+    ParameterLimit::count(shape);
+    require(std::isfinite(bound), "weights of shape ", shape,
+            " cannot be initialised: a layer has no inputs, expected at least one channel");
+    Tensor weights(context_, std::move(shape));  // first: it refuses what is too large
+    if (context_.only_counts()) {  // the values of a large network would take seconds, and its memory
+      ++count_;
+      context_.write(weights.buffer(), 0, nullptr, weights.size() * context_.real_size());
+      return Var::leaf(weights);
+    }
+    std::vector<float> values(weights.size());
     const RandomKey key{.seed = seed_, .stream = RandomStream::weights, .step = ++count_};
     for (std::size_t i = 0; i < values.size(); ++i)
       values[i] = static_cast<float>(
           bound * (2 * (random_word(key, 0, static_cast<std::uint32_t>(i)) + 0.5) * 0x1p-32 - 1));
-    return Var::leaf(Tensor::from(context_, std::move(shape), values));
+    weights.write(std::span<const float>(values));
+    return Var::leaf(std::move(weights));
   }
 
   /// Standard normal.
   Var normal(std::size_t rows, std::size_t columns) {
+    ParameterLimit::count({rows, columns});
     return Var::leaf(random_normal(context_,
                                    {.seed = seed_, .stream = RandomStream::weights, .step = ++count_}, 1,
                                    rows, columns)
                          .reshape({rows, columns}));
   }
 
-  Var constant(Shape shape, double value) { return Var::leaf(full(context_, std::move(shape), value)); }
+  Var constant(Shape shape, double value) {
+    ParameterLimit::count(shape);
+    return Var::leaf(full(context_, std::move(shape), value));
+  }
 
  private:
   Context context_;
@@ -89,19 +140,20 @@ inline std::vector<Var> values_of(const std::vector<NamedParameter>& parameters)
   return values;
 }
 
-/// While an object of this class exists, the parameters are constants: no gradient flows to them, and grad()
-/// with respect to one throws. For a network through which another one is trained.
+/// While an object of this class exists, grad() with respect to one of the parameters throws. For a network
+/// through which another one is trained. Operations are recorded as always, so that a graph from this time
+/// can be differentiated in full later; grad() computes only what its inputs need.
 class Frozen {
  public:
   explicit Frozen(const std::vector<NamedParameter>& parameters) {
     for (const NamedParameter& p : parameters) {
-      if (!p.value->requires_grad()) continue;  // already frozen
+      if (p.value->empty()) continue;
       nodes_.push_back(p.value->node());
-      nodes_.back()->requires_grad = false;
+      ++nodes_.back()->frozen;
     }
   }
   ~Frozen() {
-    for (const auto& node : nodes_) node->requires_grad = true;
+    for (const auto& node : nodes_) --node->frozen;
   }
   Frozen(const Frozen&) = delete;
   Frozen& operator=(const Frozen&) = delete;

@@ -1,5 +1,7 @@
 // Saves and loads parameters as safetensors, with the names and shapes of a PyTorch state_dict().
 #pragma once
+#include <optional>
+
 #include "motiongan/io/safetensors.hpp"
 #include "motiongan/nn/module.hpp"
 
@@ -10,6 +12,7 @@ namespace detail {
 /// [taps, out, in] <-> [out, in, taps]: moves the axis of size `taps` from front to back, or the reverse.
 template <class T>
 std::vector<T> move_taps(const std::vector<T>& values, std::size_t taps, bool to_back) {
+  if (values.empty()) return {};
   const std::size_t rest = values.size() / taps;
   std::vector<T> out(values.size());
   for (std::size_t s = 0; s < taps; ++s)
@@ -37,22 +40,43 @@ inline std::vector<double> to_file_order(const NamedParameter& parameter, const 
                                                           : values;
 }
 
-/// Adds every parameter to `file` as `prefix` + its name, in the context's precision. Throws Error, naming
-/// the parameter, if one holds a value that is not finite.
-inline void save_parameters(const std::vector<NamedParameter>& parameters, SafeTensors& file,
-                            const std::string& prefix = "") {
+/// Adds every parameter to `file` as `prefix` + its name, in the context's precision, whatever its values.
+inline void add_parameters(const std::vector<NamedParameter>& parameters, SafeTensors& file,
+                           const std::string& prefix = "") {
   for (const NamedParameter& p : parameters) {
     const std::vector<double> values = to_file_order(p, p.value->value());
-    for (double v : values)
-      if (!std::isfinite(v))
-        throw DivergedError(
-            "the parameter \"", prefix + p.name, "\" holds ", v,
-            ": training diverged; nothing is saved, resume from the last file with a lower learning rate");
     file.tensors[prefix + p.name] =
         p.value->context().precision() == Precision::f64
             ? SafeTensor::of(file_shape(p), values)
             : SafeTensor::of(file_shape(p), std::vector<float>(values.begin(), values.end()));
   }
+}
+
+/// A value that is not finite, and the tensor that holds it.
+struct NotFinite {
+  std::string name;
+  double value;
+};
+
+/// The first value among the floating-point tensors of `file` that is not finite.
+inline std::optional<NotFinite> first_not_finite(const SafeTensors& file) {
+  for (const auto& [name, tensor] : file.tensors) {
+    if (tensor.dtype != "F32" && tensor.dtype != "F64") continue;
+    for (const double v : tensor.as<double>())
+      if (!std::isfinite(v)) return NotFinite{name, v};
+  }
+  return std::nullopt;
+}
+
+/// add_parameters() for a file that is to be loaded. Throws DivergedError, naming the parameter, if one holds
+/// a value that is not finite.
+inline void save_parameters(const std::vector<NamedParameter>& parameters, SafeTensors& file,
+                            const std::string& prefix = "") {
+  add_parameters(parameters, file, prefix);
+  if (const auto found = first_not_finite(file))
+    throw DivergedError(
+        "the parameter \"", found->name, "\" holds ", found->value,
+        ": training diverged; nothing is saved, resume from the last file with a lower learning rate");
 }
 
 /// Sets every parameter from `file`. Throws Error, starting with `where` and naming the tensor, if one is

@@ -63,7 +63,7 @@ inline Tensor pack_taps(const Context& context, GemmCall call, std::size_t taps_
   const std::size_t columns = 2 * context.vector_width(), last = call.n % columns;
   // A packed panel is always multiplied at full width.
   const bool narrow = last > 0 && last <= columns / 2 && call.n < 4 * columns;
-  if (rows < 256 || taps_count > 4 || call.k < 16 || narrow) return {};
+  if (rows < 256 || taps_count == 0 || taps_count > 4 || call.k < 16 || call.n == 0 || narrow) return {};
   if (call.b_transposed && last == 0) {  // the panels of the taps are consecutive
     call.n *= taps_count;
     return pack_b(context, call);
@@ -73,9 +73,14 @@ inline Tensor pack_taps(const Context& context, GemmCall call, std::size_t taps_
   return pack_b(context, call);
 }
 
+/// Rows of one frame: the product of all axes but the first and the last.
+inline std::size_t frame_rows(const Tensor& x) {
+  return element_count({x.shape().begin() + 1, x.shape().end() - 1});
+}
+
 inline Tensor conv1d_value(const Tensor& x, const Tensor& w, const Offsets& offsets, std::size_t frames_out,
                            bool transposed, const Epilogue& epilogue) {
-  const std::size_t frames_in = x.dim(0), in = x.shape().back(), rows = x.size() / frames_in / in;
+  const std::size_t frames_in = x.dim(0), in = x.shape().back(), rows = frame_rows(x);
   const std::size_t out = transposed ? w.dim(2) : w.dim(1), tap_size = w.dim(1) * w.dim(2);
   Shape shape = x.shape();
   shape.front() = frames_out;
@@ -131,7 +136,7 @@ inline Tensor conv1d_value(const Tensor& x, const Tensor& w, const Offsets& offs
 /// W_s[i, j] = sum over frames t and rows of p[t, i] * q[t + offset_s, j]: [taps, P, Q].
 inline Tensor conv1d_weight_value(const Tensor& p, const Tensor& q, const Offsets& offsets) {
   const std::size_t p_frames = p.dim(0), q_frames = q.dim(0), m = p.shape().back(), n = q.shape().back(),
-                    rows = p.size() / p_frames / m;
+                    rows = frame_rows(p);
   Tensor w(p.context(), {offsets.size(), m, n});
   for (std::size_t s = 0; s < offsets.size(); ++s) {
     const long first = std::max(0L, -static_cast<long>(offsets[s]));
@@ -170,12 +175,12 @@ struct Conv1dEpilogue {
 
 /// y[t] = sum_s x[t + offset_s] * op(W_s) + bias + residual, then ReLU if extras.relu. x is [T, ..., in]; W
 /// is [taps, out, in] (op transposes) or, with `transposed`, [taps, in, out]; y is [frames_out, ..., out].
-/// Throws Error if the weights do not fit the taps or the input.
+/// Throws Error if the weights do not fit the taps or the input. Frames before or after x count as zero.
 inline Var conv1d(const Var& x, const Var& w, const Offsets& offsets, std::size_t frames_out,
                   bool transposed = false, const Conv1dEpilogue& extras = {}) {
   require(w.value().rank() == 3 && w.dim(0) == offsets.size(), "conv1d: weights ", w.shape(), " for ",
           offsets.size(), " taps");
-  require(x.shape().back() == w.dim(transposed ? 1 : 2), "conv1d: input ", x.shape(),
+  require(x.value().rank() >= 2 && x.shape().back() == w.dim(transposed ? 1 : 2), "conv1d: input ", x.shape(),
           " does not fit weights ", w.shape());
   detail::Epilogue epilogue;
   if (!extras.bias.empty()) epilogue.bias = extras.bias.value();
@@ -193,7 +198,7 @@ inline Var conv1d(const Var& x, const Var& w, const Offsets& offsets, std::size_
                     by_w =
                         transposed ? conv1d_weight(xi, masked, -offsets) : conv1d_weight(masked, xi, offsets);
                   if (needs[2])
-                    by_bias = detail::sum_axis(masked, 1, masked.size() / masked.shape().back(),
+                    by_bias = detail::sum_axis(masked, 1, detail::last_axis("conv1d", masked.shape()).outer,
                                                masked.shape().back(), 1, self.inputs[2].shape());
                   return {by_x, by_w, by_bias, masked};
                 });
@@ -202,6 +207,7 @@ inline Var conv1d(const Var& x, const Var& w, const Offsets& offsets, std::size_
 /// x W^T + bias + residual on the last axis, then ReLU if epilogue.relu: [..., in] -> [..., out]. `w` is
 /// [out, in] or, from a convolution with one tap, [1, out, in].
 inline Var linear(const Var& x, const Var& w, const Conv1dEpilogue& epilogue = {}) {
+  require(x.value().rank() >= 2, "linear: input ", x.shape(), ", expected rows [..., in]");
   const Var one_tap = w.value().rank() == 2 ? reshape(w, {1, w.dim(0), w.dim(1)}) : w;
   return conv1d(x, one_tap, {0}, x.dim(0), false, epilogue);
 }
@@ -209,6 +215,9 @@ inline Var linear(const Var& x, const Var& w, const Conv1dEpilogue& epilogue = {
 /// W_s[i, j] = sum over frames t and rows of p[t, i] * q[t + offset_s, j], the gradient of conv1d with
 /// respect to its weights: [T, ..., P], [T', ..., Q] -> [taps, P, Q].
 inline Var conv1d_weight(const Var& p, const Var& q, const Offsets& offsets) {
+  require(p.value().rank() >= 2 && q.value().rank() >= 2 &&
+              detail::frame_rows(p.value()) == detail::frame_rows(q.value()),
+          "conv1d_weight: shapes ", p.shape(), " and ", q.shape(), ", expected as many rows in each frame");
   return record("conv1d_weight", {p, q}, detail::conv1d_weight_value(p.value(), q.value(), offsets),
                 [offsets](const Node& self, const Var& u, const Needs& needs) -> std::vector<Var> {
                   const Var &pi = self.inputs[0], &qi = self.inputs[1];

@@ -174,8 +174,8 @@ inline std::vector<Tensor> gru_rollout_backward(const GruTrace& t, const Node& s
 inline Var gru_rollout(const Var& x_gates, const Var& each, const Var& last, const GruRolloutWeights& w,
                        std::size_t frames) {
   const std::size_t k = w.recurrent.dim(1), dof = w.diff.dim(0), batch = last.dim(0);
-  require(x_gates.value().rank() == 3 && x_gates.dim(0) > 0 && frames > 0 && x_gates.dim(1) == batch &&
-              x_gates.dim(2) == 3 * k && each.shape() == Shape{batch, 3 * k} &&
+  require(x_gates.value().rank() == 3 && x_gates.dim(0) > 0 && frames > 0 && k > 0 && dof > 0 &&
+              x_gates.dim(1) == batch && x_gates.dim(2) == 3 * k && each.shape() == Shape{batch, 3 * k} &&
               last.shape() == Shape{batch, dof} && w.recurrent.dim(0) == 3 * k &&
               w.pose.shape() == Shape{3 * k, dof} && w.diff.dim(1) == k,
           "gru_rollout: gates ", x_gates.shape(), " and ", each.shape(), ", last pose ", last.shape(),

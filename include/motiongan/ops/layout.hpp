@@ -6,17 +6,10 @@ namespace motiongan {
 
 namespace detail {
 
-/// Views a tensor as [outer, count, inner] around one axis.
-struct AxisView {
-  std::size_t outer = 1, count = 1, inner = 1;
-  AxisView(const Shape& shape, std::size_t axis) : count(shape.at(axis)) {
-    for (std::size_t i = 0; i < shape.size(); ++i) (i < axis ? outer : inner) *= i == axis ? 1 : shape[i];
-  }
-};
-
 /// Copies `run` elements of each of `outer` blocks (starting at `first`, `stride` apart) from x to out.
 inline void copy_runs(const Tensor& x, std::size_t x_first, std::size_t x_stride, const Tensor& out,
                       std::size_t out_first, std::size_t out_stride, std::size_t outer, std::size_t run) {
+  if (outer == 0 || run == 0) return;
   const Context& context = x.context();
   context.launch("layout", "copy_runs", LaunchGrid::items(outer * vectors(context, run)),
                  x.view(x_first, {x.size() - x_first}), x_stride,
@@ -26,6 +19,12 @@ inline void copy_runs(const Tensor& x, std::size_t x_first, std::size_t x_stride
 /// Copies x to `to`, which has the same size.
 inline void copy_tensor(const Tensor& x, const Tensor& to) { copy_runs(x, 0, 0, to, 0, 0, 1, x.size()); }
 
+/// Throws Error for more frames than an int of a kernel can count.
+inline void check_frames(const char* operation, std::size_t frames) {
+  require(frames < std::numeric_limits<cl_int>::max(), operation, ": ", frames,
+          " frames, kernels count up to ", std::numeric_limits<cl_int>::max() - 1, "; use fewer frames");
+}
+
 }  // namespace detail
 
 inline Var pad(const Var& x, std::size_t axis, std::size_t before, std::size_t after);
@@ -33,9 +32,9 @@ inline Var pad(const Var& x, std::size_t axis, std::size_t before, std::size_t a
 /// Entries first .. first + count - 1 of an axis; a view of the same data for the first axis. Throws Error if
 /// they exceed the axis.
 inline Var slice(const Var& x, std::size_t axis, std::size_t first, std::size_t count) {
-  const detail::AxisView view(x.shape(), axis);
-  require(first + count <= view.count, "slice: ", count, " entries from ", first, " of axis ", axis, " of ",
-          x.shape());
+  const detail::AxisView view("slice", x.shape(), axis);
+  require(first <= view.count && count <= view.count - first, "slice: ", count, " entries from ", first,
+          " of axis ", axis, " of ", x.shape());
   Shape shape = x.shape();
   shape[axis] = count;
   Tensor value;
@@ -54,10 +53,12 @@ inline Var slice(const Var& x, std::size_t axis, std::size_t first, std::size_t 
 
 /// Zero padding along an axis: `before` entries in front and `after` at the end.
 inline Var pad(const Var& x, std::size_t axis, std::size_t before, std::size_t after) {
-  if (before + after == 0) return x;
-  const detail::AxisView view(x.shape(), axis);
+  if (before == 0 && after == 0) return x;
+  const detail::AxisView view("pad", x.shape(), axis);
   Shape shape = x.shape();
-  shape[axis] += before + after;
+  require(!__builtin_add_overflow(shape[axis], before, &shape[axis]) &&
+              !__builtin_add_overflow(shape[axis], after, &shape[axis]),
+          "pad: ", before, " and ", after, " entries around axis ", axis, " of ", x.shape(), " are too many");
   const std::size_t run = view.count * view.inner, out_run = shape[axis] * view.inner;
   Tensor value(x.context(), shape);
   x.context().launch("layout", "pad_runs",
@@ -73,7 +74,8 @@ inline Var pad(const Var& x, std::size_t axis, std::size_t before, std::size_t a
 inline Var concatenate(const std::vector<Var>& parts, std::size_t axis) {
   require(!parts.empty(), "concatenate: no tensors given, expected at least one");
   Shape shape = parts[0].shape();
-  shape.at(axis) = 0;
+  require(axis < shape.size(), "concatenate: shape ", shape, " has no axis ", axis);
+  shape[axis] = 0;
   for (const Var& part : parts) {
     Shape rest = part.shape();
     require(rest.size() == shape.size(), "concatenate: ranks differ");
@@ -84,7 +86,7 @@ inline Var concatenate(const std::vector<Var>& parts, std::size_t axis) {
   Tensor value(parts[0].context(), shape);
   std::size_t first = 0;
   for (const Var& part : parts) {
-    const detail::AxisView view(part.shape(), axis);
+    const detail::AxisView view("concatenate", part.shape(), axis);
     const std::size_t run = view.count * view.inner;
     detail::copy_runs(part.value(), 0, run, value, first * view.inner, shape[axis] * view.inner, view.outer,
                       run);
@@ -112,12 +114,17 @@ struct FrameShift {
 
 /// Shifts each sample's frames by its own offset: x [T, B, C], offset [B] -> [frames_out, B, C]. Used for
 /// DVGAN's input shift and final cut (Lin & Amer, sec. 4). Throws Error unless there is one offset per
-/// sample.
+/// sample, or if a frame number does not fit an int.
 inline Var shift_frames(const Var& x, const Indices& offset, std::size_t frames_out,
                         const FrameShift& shift = {}) {
   require(x.value().rank() == 3 && offset.size() == x.dim(1), "shift_frames: ", offset.size(),
           " offsets for motion ", x.shape());
   const std::size_t frames_in = x.dim(0), batch = x.dim(1), channels = x.dim(2);
+  detail::check_frames("shift_frames", frames_in);
+  detail::check_frames("shift_frames", frames_out);
+  const long long room = std::numeric_limits<cl_int>::max() - static_cast<long long>(frames_out) -
+                         std::abs(static_cast<long long>(shift.first));
+  offset.check_range("shift_frames", -room, room);
   Tensor value(x.context(), {frames_out, batch, channels});
   x.context().launch("layout", "shift_frames",
                      LaunchGrid::items(frames_out * batch * detail::vectors(x.context(), channels)),
@@ -136,7 +143,8 @@ inline Var pair_means_adjoint(const Var& g, std::size_t frames);
 /// 2t+1), t < T/2, with zero for frames outside: [T, B, C] -> [2*(T/2)+1, B, C]. The even pairs are DVGAN's
 /// `Down`; conv_down needs both.
 inline Var pair_means(const Var& x) {
-  const std::size_t frames = x.dim(0), slab = x.size() / frames;
+  const std::size_t slab = detail::frame_size("pair_means", x), frames = x.dim(0);
+  detail::check_frames("pair_means", frames);
   Shape shape = x.shape();
   shape[0] = 2 * (frames / 2) + 1;
   Tensor value(x.context(), shape);
@@ -148,10 +156,14 @@ inline Var pair_means(const Var& x) {
                 });
 }
 
-/// The adjoint of pair_means: [2*(T/2)+1, B, C] -> [T, B, C] with T = `frames`.
+/// The adjoint of pair_means: [2*(T/2)+1, B, C] -> [T, B, C] with T = `frames`. Throws Error for another
+/// number of pairs.
 inline Var pair_means_adjoint(const Var& g, std::size_t frames) {
   Shape shape = g.shape();
-  const std::size_t slab = g.size() / shape[0];
+  const std::size_t slab = detail::frame_size("pair_means_adjoint", g);
+  detail::check_frames("pair_means_adjoint", frames);
+  require(shape[0] == 2 * (frames / 2) + 1, "pair_means_adjoint: pairs ", shape, " of ", frames,
+          " frames, expected ", 2 * (frames / 2) + 1);
   shape[0] = frames;
   Tensor value(g.context(), shape);
   g.context().launch("layout", "pair_means_adjoint",
@@ -163,9 +175,12 @@ inline Var pair_means_adjoint(const Var& g, std::size_t frames) {
 
 inline Var scatter_add_rows(const Var& x, const Indices& index, std::size_t rows);
 
-/// Rows of a table by index: [V, C], n indices -> [n, C]. The indices are not checked.
+/// Rows of a table by index: [V, C], n indices -> [n, C]. Throws Error for an index outside of
+/// 0 .. V - 1.
 inline Var gather_rows(const Var& table, const Indices& index) {
+  require(table.value().rank() == 2, "gather_rows: a table ", table.shape(), ", expected [rows, channels]");
   const std::size_t rows = table.dim(0), channels = table.dim(1);
+  index.check_range("gather_rows", 0, static_cast<long long>(rows) - 1);
   Tensor value(table.context(), {index.size(), channels});
   table.context().launch("layout", "gather_rows",
                          LaunchGrid::items(index.size() * detail::vectors(table.context(), channels)),
@@ -177,8 +192,11 @@ inline Var gather_rows(const Var& table, const Indices& index) {
 }
 
 /// The adjoint of gather_rows: sums rows with the same index, in order, so that reruns are bit-equal. [n, C]
-/// -> [rows, C].
+/// -> [rows, C]. Throws Error unless there is one index per row of x, in 0 .. rows - 1.
 inline Var scatter_add_rows(const Var& x, const Indices& index, std::size_t rows) {
+  require(x.value().rank() == 2 && x.dim(0) == index.size(), "scatter_add_rows: ", index.size(),
+          " indices for rows ", x.shape());
+  index.check_range("scatter_add_rows", 0, static_cast<long long>(rows) - 1);
   const std::size_t channels = x.dim(1);
   Tensor value(x.context(), {rows, channels});
   x.context().launch("layout", "scatter_add_rows",

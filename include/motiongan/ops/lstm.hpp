@@ -79,6 +79,11 @@ inline Var lstm_layer_fused(const Var& x_gates, const Var& w_hh, const Var& h_fi
   require(x_gates.dim(2) == 4 * k && w_hh.dim(0) == 4 * k && h_first.size() == slab && c_first.size() == slab,
           "lstm_layer: gates ", x_gates.shape(), ", weights ", w_hh.shape(), ", first state ",
           h_first.shape());
+  require(x_gates.dim(0) > 0 && k > 0, "lstm_layer: gates ", x_gates.shape(), ", weights ", w_hh.shape(),
+          "; give at least one step and one hidden unit");
+  require(lengths.empty() || lengths.size() == batch, "lstm_layer: ", lengths.size(), " lengths for ", batch,
+          " samples");
+  if (!lengths.empty()) lengths.check_range("lstm_layer, lengths", 0, static_cast<long long>(x_gates.dim(0)));
   const LstmPass pass =
       lstm_forward(x_gates.value(), w_hh.value(), h_first.value(), c_first.value(), lengths);
   return fused(
@@ -107,9 +112,9 @@ inline Var lstm_layer_fused(const Var& x_gates, const Var& w_hh, const Var& h_fi
 }  // namespace detail
 
 /// One LSTM layer as in PyTorch (gate order i, f, g, o). `x_gates` [T, B, 4k] is W_ih x + b_ih + b_hh, `w_hh`
-/// is [4k, k], `h_first` and `c_first` are [B, k]. Sample b keeps its state after lengths[b] steps (empty:
-/// all run for T steps). Returns all states, [2, T, B, k]: h of every step, then c of every step. Throws
-/// Error if the shapes do not fit.
+/// is [4k, k], `h_first` and `c_first` are [B, k]. Sample b keeps its state after lengths[b] steps, 0 to T
+/// (empty: all run for T steps). Returns all states, [2, T, B, k]: h of every step, then c of every step.
+/// Throws Error if the shapes or lengths do not fit, or for no steps or hidden units.
 inline Var lstm_layer(const Var& x_gates, const Var& w_hh, const Var& h_first, const Var& c_first,
                       const Indices& lengths = {}) {
   return detail::lstm_layer_fused(x_gates, w_hh, h_first, c_first, lengths, false);
@@ -125,6 +130,7 @@ inline Var lstm_hidden(const Var& x_gates, const Var& w_hh) {
 /// The final h (kind 0) or c (kind 1) of every sample, [B, k], from the states of lstm_layer.
 inline Var last_state(const Var& states, std::size_t kind) {
   const std::size_t frames = states.dim(1), batch = states.dim(2), k = states.dim(3);
+  require(frames > 0, "last_state: states ", states.shape(), " of no step");
   return reshape(slice(reshape(states, {2 * frames, batch, k}), 0, kind * frames + frames - 1, 1),
                  {batch, k});
 }

@@ -34,6 +34,7 @@ class LstmStepper {
   }
 
   void step(const LstmStep& s) const {
+    if (s.batch == 0) return;
     const Context& context = weight_.context();
     const std::size_t extra_row = s.extra_is_bias ? 0 : 4 * k_;
     if (!packed_.empty()) {

@@ -13,12 +13,38 @@ inline std::size_t vectors(const Context& context, std::size_t n) {
   return (n + context.vector_width() - 1) / context.vector_width();
 }
 
+/// Views a tensor as [outer, count, inner] around one axis. Throws Error, starting with `operation`, if there
+/// is no such axis.
+struct AxisView {
+  std::size_t outer = 1, count = 0, inner = 1;
+  AxisView(const char* operation, const Shape& shape, std::size_t axis) {
+    require(axis < shape.size(), operation, ": shape ", shape, " has no axis ", axis);
+    count = shape[axis];
+    for (std::size_t i = 0; i < shape.size(); ++i)
+      if (i != axis) (i < axis ? outer : inner) *= shape[i];
+  }
+};
+
+/// The same around the last axis: its rows are `outer`.
+inline AxisView last_axis(const char* operation, const Shape& shape) {
+  return {operation, shape, shape.empty() ? 0 : shape.size() - 1};
+}
+
+/// Elements of one entry of the first axis, such as a frame; right for no frames too.
+inline std::size_t frame_size(const char* operation, const Var& x) {
+  return AxisView(operation, x.shape(), 0).inner;
+}
+
 /// scale * sum over the middle axis: [outer, count, inner] -> [outer, inner]. The order of summation is
-/// fixed.
+/// fixed. A sum of no elements is 0.
 inline Tensor sum_axis_value(const Tensor& x, std::size_t outer, std::size_t count, std::size_t inner,
                              double scale, Shape shape) {
   const Context& context = x.context();
   Tensor out(context, std::move(shape));
+  if (count == 0) {
+    fill(out, 0);
+    return out;
+  }
   if (inner == 1 && count > 1) {
     context.launch("reduce", "sum_rows", LaunchGrid::items(outer), x, out, outer, count, KernelReal{scale});
     return out;
@@ -87,32 +113,37 @@ inline Var broadcast_axis(const Var& x, std::size_t outer, std::size_t count, st
 
 /// Sum of all elements, [1].
 inline Var sum(const Var& x) { return detail::sum_axis(x, 1, x.size(), 1, 1, {1}); }
-/// Mean of all elements, [1].
+/// Mean of all elements, [1]. Throws Error if there are none.
 inline Var mean(const Var& x) {
+  require(x.size() > 0, "mean: shape ", x.shape(), " has no elements; give at least one frame and sample");
   return detail::sum_axis(x, 1, x.size(), 1, 1.0 / static_cast<double>(x.size()), {1});
 }
+
+namespace detail {
+/// An axis that may be negative, counted from the end, as an index. Throws Error if there is no such axis.
+inline std::size_t axis_index(const char* operation, const Shape& shape, int axis) {
+  const auto rank = static_cast<int>(shape.size());
+  require(axis >= -rank && axis < rank, operation, ": axis ", axis, " of ", shape, ", expected ", -rank,
+          " to ", rank - 1);
+  return static_cast<std::size_t>(axis < 0 ? axis + rank : axis);
+}
+}  // namespace detail
 
 /// scale * sum over one axis, which is removed: [2, 3, 5] over axis 1 -> [2, 5]. Negative axes count from the
 /// end, -1 is the last. Throws Error if there is no such axis.
 inline Var sum(const Var& x, int axis, double scale = 1) {
-  const auto rank = static_cast<int>(x.value().rank());
-  require(axis >= -rank && axis < rank, "sum: axis ", axis, " of ", x.shape(), ", expected ", -rank, " to ",
-          rank - 1);
-  const auto at = static_cast<std::size_t>(axis < 0 ? axis + rank : axis);
+  const std::size_t at = detail::axis_index("sum", x.shape(), axis);
+  const detail::AxisView view("sum", x.shape(), at);
   Shape shape = x.shape();
-  std::size_t outer = 1, inner = 1;
-  for (std::size_t i = 0; i < shape.size(); ++i)
-    if (i != at) (i < at ? outer : inner) *= shape[i];
-  const std::size_t count = shape[at];
   shape.erase(shape.begin() + static_cast<std::ptrdiff_t>(at));
-  return detail::sum_axis(x, outer, count, inner, scale, std::move(shape));
+  return detail::sum_axis(x, view.outer, view.count, view.inner, scale, std::move(shape));
 }
 
-/// Mean over one axis, which is removed, as in sum().
+/// Mean over one axis, which is removed, as in sum(). Throws Error if the axis is empty.
 inline Var mean(const Var& x, int axis) {
-  const auto rank = static_cast<int>(x.value().rank());
-  const auto at = static_cast<std::size_t>(axis < 0 ? axis + rank : axis);
-  return sum(x, axis, 1.0 / static_cast<double>(x.dim(at)));
+  const std::size_t count = x.shape()[detail::axis_index("mean", x.shape(), axis)];
+  require(count > 0, "mean: axis ", axis, " of ", x.shape(), " is empty; give at least one frame and sample");
+  return sum(x, axis, 1.0 / static_cast<double>(count));
 }
 
 /// Sum over frames and channels: [T, B, C] -> [B].
@@ -145,17 +176,21 @@ inline Var broadcast_to(const Var& x, const Shape& shape) {
 /// scale * nearest-neighbour upsampling along the first axis: [T, ...] -> [times*T, ...]. DVGAN's `Up` for
 /// times = 2.
 inline Var upsample_nearest(const Var& x, std::size_t times, double scale = 1) {
+  const std::size_t size = detail::frame_size("upsample_nearest", x), frames = x.dim(0);
   Shape shape = x.shape();
-  shape[0] *= times;
-  return detail::broadcast_axis(x, x.dim(0), times, x.size() / x.dim(0), scale, std::move(shape));
+  shape[0] = element_count({frames, times});
+  return detail::broadcast_axis(x, frames, times, size, scale, std::move(shape));
 }
 
 /// scale * sum over groups of `times` consecutive frames: [times*T, ...] -> [T, ...]. With times = 2 and
-/// scale = 1/2 this is average pooling, DVGAN's `Down`.
+/// scale = 1/2 this is average pooling, DVGAN's `Down`. Throws Error unless `times` divides the frames.
 inline Var sum_pool(const Var& x, std::size_t times, double scale = 1) {
+  const std::size_t size = detail::frame_size("sum_pool", x);
+  require(times > 0 && x.dim(0) % times == 0, "sum_pool: groups of ", times, " frames of ", x.shape(),
+          ", expected a divisor of the number of frames");
   Shape shape = x.shape();
   shape[0] /= times;
-  return detail::sum_axis(x, shape[0], times, x.size() / x.dim(0), scale, shape);
+  return detail::sum_axis(x, shape[0], times, size, scale, shape);
 }
 
 /// Normalises every row to unit length: [rows, n] -> [rows, n]; a zero row stays zero.
@@ -178,9 +213,10 @@ inline void add_broadcast_relu(const Tensor& big, const Tensor& small, const Ten
 /// relu(big + small), with each frame of small added to `count` consecutive frames of big: [count*T, ...],
 /// [T, ...] -> [count*T, ...]. One pass instead of three. Throws Error if the shapes do not fit.
 inline Var relu_of_sum(const Var& big, const Var& small) {
-  require(big.size() % small.size() == 0 && big.size() / big.dim(0) * small.dim(0) == small.size(),
+  const std::size_t inner = detail::frame_size("relu_of_sum", big), outer = small.dim(0),
+                    count = outer > 0 ? big.dim(0) / outer : 1;
+  require(detail::frame_size("relu_of_sum", small) == inner && big.dim(0) == outer * count && count > 0,
           "relu_of_sum: shapes ", big.shape(), " and ", small.shape());
-  const std::size_t outer = small.dim(0), count = big.dim(0) / outer, inner = small.size() / outer;
   Tensor value(big.context(), big.shape());
   detail::add_broadcast_relu(big.value(), small.value(), value, outer, count, inner);
   return record("relu_of_sum", {big, small}, std::move(value),
@@ -190,11 +226,21 @@ inline Var relu_of_sum(const Var& big, const Var& small) {
                 });
 }
 
+namespace detail {
+/// A function of every row of `view`, [rows, n], by a kernel of cl/softmax.cl.
+inline Tensor row_function(const char* kernel, const Tensor& x, const AxisView& view) {
+  Tensor value(x.context(), x.shape());
+  const LaunchGrid grid = LaunchGrid::items(view.count > 0 ? view.outer : 0);
+  x.context().launch("softmax", kernel, grid, x, value, view.outer, view.count);
+  return value;
+}
+}  // namespace detail
+
 /// Softmax over the last axis.
 inline Var softmax(const Var& x) {
-  const std::size_t n = x.shape().back(), rows = x.size() / n;
-  Tensor value(x.context(), x.shape());
-  x.context().launch("softmax", "softmax_rows", LaunchGrid::items(rows), x.value(), value, rows, n);
+  const detail::AxisView view = detail::last_axis("softmax", x.shape());
+  const std::size_t n = view.count, rows = view.outer;
+  Tensor value = detail::row_function("softmax_rows", x.value(), view);
   return record(
       "softmax", {x}, std::move(value),
       [=](const Node& self, const Var& g, const Needs&) -> std::vector<Var> {
@@ -205,9 +251,9 @@ inline Var softmax(const Var& x) {
 
 /// Logarithm of the softmax over the last axis; finite even where the softmax underflows to 0.
 inline Var log_softmax(const Var& x) {
-  const std::size_t n = x.shape().back(), rows = x.size() / n;
-  Tensor value(x.context(), x.shape());
-  x.context().launch("softmax", "log_softmax_rows", LaunchGrid::items(rows), x.value(), value, rows, n);
+  const detail::AxisView view = detail::last_axis("log_softmax", x.shape());
+  const std::size_t n = view.count, rows = view.outer;
+  Tensor value = detail::row_function("log_softmax_rows", x.value(), view);
   return record("log_softmax", {x}, std::move(value),
                 [=](const Node& self, const Var& g, const Needs&) -> std::vector<Var> {
                   const Var p = exp(detail::itself(self));

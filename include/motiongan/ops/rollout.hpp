@@ -215,7 +215,7 @@ inline Var rollout_composed(const Var& given, const Var& x_gates, const RolloutW
 inline Var rollout(const Var& given, const Var& x_gates, const RolloutWeights& w) {
   const std::size_t k = w.diff.dim(1), dof = w.diff.dim(0), frames = x_gates.dim(0) + 1;
   require(given.value().rank() == 3 && given.dim(2) == dof && given.dim(0) >= 1 && given.dim(0) <= frames &&
-              x_gates.dim(1) == given.dim(1) && x_gates.dim(2) == 4 * k &&
+              x_gates.dim(1) == given.dim(1) && x_gates.dim(2) == 4 * k && k > 0 && dof > 0 &&
               w.layer0.shape() == Shape{4 * k, dof + k} && w.layer1.shape() == Shape{4 * k, 2 * k},
           "rollout: given ", given.shape(), ", gates ", x_gates.shape(), ", weights ", w.layer0.shape(), ", ",
           w.layer1.shape(), ", ", w.diff.shape());

@@ -46,6 +46,7 @@ class Adam : public Optimizer {
   /// unless limit > 0.
   void clip(double limit) {
     require(limit > 0, "Adam: the clipping limit is ", limit, ", expected a number above 0");
+    gather();
     context().launch("elementwise", detail::clamp_kernel.name(), detail::vector_grid(values()), values(),
                      values(), values().size(), KernelReal{-limit}, KernelReal{limit});
   }

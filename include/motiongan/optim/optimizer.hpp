@@ -7,7 +7,8 @@
 
 namespace motiongan {
 
-/// Moves the parameters into one buffer, of which they become views.
+/// Moves the parameters into one buffer, of which they become views. Optimizers can share a parameter: each
+/// moves it back before it updates it.
 class Optimizer {
  public:
   virtual ~Optimizer() = default;
@@ -21,6 +22,8 @@ class Optimizer {
   virtual std::vector<std::pair<std::string, Tensor>> state() const = 0;
 
   const std::vector<Var>& parameters() const { return parameters_; }
+  /// All parameters concatenated, [n]: the memory that they are views of.
+  const Tensor& values() const { return values_; }
   std::size_t steps() const { return steps_; }
   void set_steps(std::size_t steps) { steps_ = steps; }
 
@@ -36,24 +39,38 @@ class Optimizer {
       detail::copy_tensor(gradients[i].value(), gradients_.view(at, gradients[i].shape()));
       at += gradients[i].size();
     }
+    gather();
     ++steps_;
     update();
   }
 
  protected:
-  /// `title` names the optimizer in error messages. Throws Error if there are no parameters.
+  /// `title` names the optimizer in error messages. Throws Error if there are no parameters or one is listed
+  /// twice.
   Optimizer(const char* title, const std::vector<NamedParameter>& parameters)
       : title_(title), parameters_(values_of(parameters)) {
     require(!parameters.empty(), title, ": no parameters");
+    for (std::size_t i = 0; i < parameters.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        require(parameters_[i].node() != parameters_[j].node(), title, ": the parameters \"",
+                parameters[j].name, "\" and \"", parameters[i].name, "\" are one; list it once");
     const Context context = parameters_[0].context();
     const std::size_t n = parameter_count(parameters);
     values_ = Tensor(context, {n});
     gradients_ = full(context, {n}, 0);
+    gather();
+  }
+
+  /// Moves the parameters into values(), those that are not there already. Before values() changes.
+  void gather() {
     std::size_t at = 0;
     for (const Var& p : parameters_) {
-      const Tensor place = values_.view(at, p.shape());
-      detail::copy_tensor(p.value(), place);
-      p.node()->value = place;
+      const Tensor& value = p.value();
+      if (value.buffer() != values_.buffer() || value.offset() != at) {
+        const Tensor place = values_.view(at, p.shape());
+        detail::copy_tensor(value, place);
+        p.node()->value = place;
+      }
       at += p.size();
     }
   }
@@ -61,8 +78,7 @@ class Optimizer {
   /// Updates values() from gradients(); steps() already counts this step.
   virtual void update() = 0;
 
-  const Tensor& values() const { return values_; }        // all parameters concatenated, [n]
-  const Tensor& gradients() const { return gradients_; }  // in the same order, [n]
+  const Tensor& gradients() const { return gradients_; }  // in the order of values(), [n]
   const Context& context() const { return values_.context(); }
 
  private:

@@ -80,7 +80,10 @@ inline std::optional<SearchIndex> old_index(const std::filesystem::path& file, b
                                             const motion::MotionFormat& format,
                                             const motion::ClipOptions& clips,
                                             std::vector<std::string>& warnings) {
-  if (!std::filesystem::exists(file)) return std::nullopt;
+  std::error_code problem;
+  if (std::filesystem::status(file, problem).type() == std::filesystem::file_type::not_found)
+    return std::nullopt;
+  motion::require_regular_file(file, "search index");
   require(is_ours || looks_like_index(file), file.string(),
           " is not a search index and will not be replaced by one; give --index another file");
   try {

@@ -32,7 +32,7 @@ struct AttentionTrainOptions {
   std::uint64_t seed = 1;
 
   /// Update steps in an iteration; each draws its own random numbers.
-  std::size_t steps() const { return critic_steps + 1 + generator_steps; }
+  std::size_t steps() const { return total_steps({critic_steps, 1, generator_steps}); }
 
   void list_fields(FieldList& list) {
     const auto loss_weight = [&](double& member, const char* key, const char* help) {

@@ -58,30 +58,47 @@ inline RunRecord read_run_record(const std::filesystem::path& checkpoint) {
   return read_run_record(io::SafeTensors::read(checkpoint), checkpoint.string());
 }
 
-/// Writes the state of a run: all networks, the optimizer states and the iteration. Random numbers have no
-/// state: seed and step determine them. The file is written next to `path` and renamed, so a run killed at
-/// any moment leaves the previous checkpoint intact.
-inline void save_checkpoint(Trainer& trainer, const std::filesystem::path& path, const RunNotes& notes = {}) {
+/// The state of a run: all networks, the optimizer states and the iteration. Random numbers have no state:
+/// seed and step determine them. Throws DivergedError, naming the iteration and the tensor, if one is not
+/// finite: such a checkpoint could not be resumed.
+inline io::SafeTensors checkpoint_of(Trainer& trainer, const RunNotes& notes = {}) {
   io::SafeTensors file;
   trainer.describe(file);
   for (const TrainedPart& part : trainer.parts()) {
-    io::save_parameters(part.parameters, file, part.name + ".");
+    io::add_parameters(part.parameters, file, part.name + ".");
     const std::string prefix = concat(part.optimizer->name(), ".", part.name, ".");
     for (const auto& [name, tensor] : part.optimizer->state())
       file.tensors[prefix + name] = detail::host_copy(tensor);
     file.metadata[prefix + "steps"] = std::to_string(part.optimizer->steps());
   }
+  if (const auto found = io::first_not_finite(file))
+    throw DivergedError("training diverged by iteration ", trainer.iteration(), ": the tensor \"",
+                        found->name, "\" holds ", found->value,
+                        "; nothing is saved, try a lower learning rate");
   file.metadata["iteration"] = std::to_string(trainer.iteration());
   for (const auto& [key, value] : notes) file.metadata["note." + key] = value;
-  file.write(path);
+  return file;
 }
 
-/// Restores the state that save_checkpoint() wrote; training then continues bit for bit as if it had never
+/// Writes checkpoint_of(trainer, notes). The file is written next to `path` and renamed, so a run killed at
+/// any moment leaves the previous checkpoint intact.
+inline void save_checkpoint(Trainer& trainer, const std::filesystem::path& path, const RunNotes& notes = {}) {
+  checkpoint_of(trainer, notes).write(path);
+}
+
+/// The tensors of one network in a checkpoint, under their names in the network.
+inline io::SafeTensors part_of_checkpoint(const io::SafeTensors& checkpoint, const std::string& part) {
+  io::SafeTensors out;
+  const std::string prefix = part + ".";
+  for (const auto& [name, tensor] : checkpoint.tensors)
+    if (name.starts_with(prefix)) out.tensors[name.substr(prefix.size())] = tensor;
+  return out;
+}
+
+/// Restores the state that checkpoint_of() gave; training then continues bit for bit as if it had never
 /// stopped. Throws Error, naming what differs, if the trainer has other options or data; the trainer is then
-/// unchanged.
-inline void load_checkpoint(Trainer& trainer, const std::filesystem::path& path) {
-  const std::string where = path.string();
-  const io::SafeTensors file = io::SafeTensors::read(path);
+/// unchanged. `where` names the file.
+inline void restore_checkpoint(Trainer& trainer, const io::SafeTensors& file, const std::string& where) {
   trainer.require_same_run(file, where);
   const std::size_t iteration = detail::checkpoint_number(file, "iteration", where);
   // One list of all tensors, so that load_parameters() checks every one before it changes any.
@@ -100,6 +117,11 @@ inline void load_checkpoint(Trainer& trainer, const std::filesystem::path& path)
   io::load_parameters(all, file, where);
   for (std::size_t i = 0; i < parts.size(); ++i) parts[i].optimizer->set_steps(steps[i]);
   trainer.set_iteration(iteration);
+}
+
+/// restore_checkpoint() from a file.
+inline void load_checkpoint(Trainer& trainer, const std::filesystem::path& path) {
+  restore_checkpoint(trainer, io::SafeTensors::read(path), path.string());
 }
 
 }  // namespace motiongan

@@ -47,11 +47,15 @@ class ClipBuffer {
   }
 
   /// Gathers windows [frames, rows, dof]: `frames` frames from each of the given rows, `stride` rows apart.
+  /// Throws Error if a window exceeds the buffer.
   Tensor gather(const std::vector<cl_int>& rows, std::size_t frames, std::size_t stride = 1) const {
     Tensor out(*context_, {frames, rows.size(), dof()});
-    context_->launch("layout", "gather_windows", LaunchGrid::items(frames * rows.size()), poses_,
-                     Indices(*context_, rows), relative_, out, frames, rows.size(), dof(), stride, form_.x,
-                     form_.z, form_.yaw, KernelReal{form_.yaw_scale});
+    const Indices first(*context_, rows);
+    const long long span = frames > 0 ? static_cast<long long>((frames - 1) * stride) : 0;
+    first.check_range("a window's first frame", 0, static_cast<long long>(poses_.dim(0)) - 1 - span);
+    context_->launch("layout", "gather_windows", LaunchGrid::items(frames * rows.size()), poses_, first,
+                     relative_, out, frames, rows.size(), dof(), stride, form_.x, form_.z, form_.yaw,
+                     KernelReal{form_.yaw_scale});
     return out;
   }
 

@@ -1,11 +1,14 @@
 // The log of a training run: a CSV file, one row of numbers per logged iteration.
 #pragma once
+#include <algorithm>
 #include <charconv>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -98,17 +101,13 @@ class CsvLog {
  public:
   /// Opens the log at `path` with the columns "iteration" and `columns`. With `resume_after`, an existing log
   /// is continued: rows up to that iteration are kept; later rows, which a resumed run computes again, and an
-  /// incomplete last row are removed. Throws Error if the header differs, if a new run would overwrite rows,
-  /// or if the file cannot be written.
+  /// incomplete last row are removed. So is everything from the first line on that is no row, which a crash
+  /// of the system can leave: see repair(). Throws Error if the header differs, if a new run would overwrite
+  /// rows, or if the file cannot be written.
   CsvLog(std::filesystem::path path, const std::vector<std::string>& columns,
          std::optional<std::uint64_t> resume_after = std::nullopt)
       : path_(std::move(path)), columns_(columns.size()) {
-    std::string header = "iteration";
-    for (const std::string& name : columns) {
-      require(!name.empty() && name.find_first_of(",\"\r\n") == std::string::npos, "'", name,
-              "' is not a valid column name: it is empty or contains a comma, a quote or a line break");
-      header += "," + name;
-    }
+    const std::string header = header_of(columns);
     std::vector<std::string> lines;
     if (std::filesystem::exists(path_)) lines = detail::whole_lines(path_);
     if (!lines.empty()) {
@@ -119,12 +118,11 @@ class CsvLog {
     }
     std::string kept = header + "\n";
     for (std::size_t i = 1; i < lines.size(); ++i) {
-      const double iteration = detail::csv_numbers(lines[i], columns_ + 1, i + 1, path_).front();
-      require(iteration >= 0 && iteration < 1e18, path_.string(), ":", i + 1, ": ", iteration,
-              " is not an iteration number");
-      if (iteration > static_cast<double>(*resume_after)) continue;
+      const std::optional<double> iteration = row_of(lines[i], i + 1);
+      if (!iteration) break;
+      if (*iteration > static_cast<double>(*resume_after)) continue;
       kept += lines[i] + "\n";
-      last_ = static_cast<std::uint64_t>(iteration);
+      last_ = static_cast<std::uint64_t>(*iteration);
     }
     io::AtomicFile file(path_);
     file.write(kept);
@@ -132,6 +130,9 @@ class CsvLog {
     out_.open(path_, std::ios::binary | std::ios::app);
     require(out_.is_open(), "cannot append to the log ", path_.string(), "; check that it is writable");
   }
+
+  /// What was removed because it was no row of the log; empty if nothing was.
+  const std::string& repair() const { return repair_; }
 
   /// Appends a row; `values` are in the order of the columns. Throws Error if their number is wrong, if the
   /// iteration does not increase, or if writing fails.
@@ -157,10 +158,56 @@ class CsvLog {
   std::optional<std::uint64_t> last_iteration() const { return last_; }
 
  private:
+  static std::string header_of(const std::vector<std::string>& columns) {
+    std::string header = "iteration";
+    for (const std::string& name : columns) {
+      require(!name.empty() && name.find_first_of(",\"\r\n") == std::string::npos, "'", name,
+              "' is not a valid column name: it is empty or contains a comma, a quote or a line break");
+      header += "," + name;
+    }
+    return header;
+  }
+
+  /// The iteration of line `number`; nothing, with repair() set, if the line is not a row that follows the
+  /// rows before it.
+  std::optional<double> row_of(const std::string& line, std::size_t number) {
+    try {
+      const double iteration = detail::csv_numbers(line, columns_ + 1, number, path_).front();
+      require(iteration >= 0 && iteration < 1e18, path_.string(), ":", number, ": ", iteration,
+              " is not an iteration number");
+      return iteration;
+    } catch (const Error& error) {
+      repair_ = concat(error.what(), "; this line and all after it are removed");
+      return std::nullopt;
+    }
+  }
+
   std::filesystem::path path_;
   std::size_t columns_;
   std::optional<std::uint64_t> last_;
+  std::string repair_;
   std::ofstream out_;
 };
+
+/// The log of a run that is resumed after iteration `done`. `warn` receives what was repaired or is missing.
+/// A log without a readable header is moved to `damaged`. Throws Error as CsvLog does.
+inline std::shared_ptr<CsvLog> continued_log(const std::filesystem::path& path,
+                                             const std::vector<std::string>& columns, std::uint64_t done,
+                                             const std::filesystem::path& damaged,
+                                             const std::function<void(const std::string&)>& warn) {
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 32 && c != '\r'; };
+  if (std::filesystem::exists(path)) {
+    const std::vector<std::string> lines = detail::whole_lines(path);
+    if (lines.empty() || std::any_of(lines.front().begin(), lines.front().end(), is_control)) {
+      std::filesystem::rename(path, damaged);
+      warn(concat(path.string(), " has no readable header and is now ", damaged.string()));
+    }
+  }
+  auto log = std::make_shared<CsvLog>(path, columns, done);
+  if (!log->repair().empty()) warn(log->repair());
+  if (done > 0 && !log->last_iteration())
+    warn(concat(path.string(), " has no rows of iterations 1 to ", done, ": the curves begin after them"));
+  return log;
+}
 
 }  // namespace motiongan

@@ -25,7 +25,7 @@ struct DvganTrainOptions {
   std::uint64_t seed = 1;
 
   /// Update steps in an iteration; each draws its own random numbers.
-  std::size_t steps() const { return critic_steps + 1; }
+  std::size_t steps() const { return total_steps({critic_steps, 1}); }
 
   void list_fields(FieldList& list) {
     list.add(iterations,

@@ -1,6 +1,7 @@
 // The interface of all trainers: iterations, networks with their optimizers, named losses, options.
 #pragma once
 #include <filesystem>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,9 +27,26 @@ struct TrainedPart {
   Optimizer* optimizer = nullptr;
 };
 
-/// The largest number of iterations of `steps` steps each that the 24-bit step of a RandomKey allows.
+/// The sum of the steps of an iteration, or the largest number there is if that would be exceeded.
+inline std::size_t total_steps(std::initializer_list<std::size_t> parts) {
+  std::size_t sum = 0;
+  for (const std::size_t part : parts) sum = part > ~std::size_t{0} - sum ? ~std::size_t{0} : sum + part;
+  return sum;
+}
+
+/// The largest number of iterations of `steps` steps each that the 24-bit step of a RandomKey allows. Throws
+/// Error if that is none.
 inline std::size_t max_iterations(std::size_t steps) {
-  return (std::size_t{1} << 24) / std::max<std::size_t>(steps, 1) - 2;
+  constexpr std::size_t all = std::size_t{1} << 24;
+  require(steps <= all / 3, "an iteration has ", steps, " steps, expected at most ", all / 3,
+          ": random numbers count 2^24 steps; lower critic_steps or generator_steps");
+  return all / std::max<std::size_t>(steps, 1) - 2;
+}
+
+/// Throws Error if `iterations` of `steps` steps each exceed max_iterations().
+inline void check_iterations(std::size_t iterations, std::size_t steps) {
+  require(iterations <= max_iterations(steps), "iterations is ", iterations, ", expected at most ",
+          max_iterations(steps), " with ", steps, " steps each: random numbers count 2^24 steps");
 }
 
 /// The training of one model. run_training() drives it; save_checkpoint() and load_checkpoint() save and
@@ -54,19 +72,14 @@ class Trainer {
   /// The names of the losses, in the same order.
   virtual std::vector<std::string> loss_names() const = 0;
 
-  /// Writes the model file.
-  virtual void save_model(const std::filesystem::path& path) = 0;
   /// Adds the model's metadata and the training options ("training") to a checkpoint.
   virtual void describe(io::SafeTensors& file) const = 0;
   /// Throws Error, naming what differs, unless the checkpoint belongs to the same model, data and options.
   virtual void require_same_run(const io::SafeTensors& file, const std::string& where) const = 0;
 
  protected:
-  /// Throws Error if `iterations` of `steps` steps each exceed max_iterations().
-  Trainer(std::size_t iterations, std::size_t steps) {
-    require(iterations <= max_iterations(steps), "iterations is ", iterations, ", expected at most ",
-            max_iterations(steps), " with ", steps, " steps each: random numbers count 2^24 steps");
-  }
+  /// Throws Error as check_iterations().
+  Trainer(std::size_t iterations, std::size_t steps) { check_iterations(iterations, steps); }
 
   std::size_t iteration_ = 0;
 };
@@ -119,7 +132,6 @@ class ModelTrainer : public Trainer {
     return names;
   }
 
-  void save_model(const std::filesystem::path& path) override { model_.save(path); }
   void describe(io::SafeTensors& file) const override {
     describe_model(model_, file);
     TrainOptions options = options_;

@@ -75,6 +75,9 @@ inline double standing_height(const motion::Skeleton& skeleton, std::size_t firs
   return longest > 0 ? 1.3 * longest : 1;
 }
 
+/// The largest coordinate that is drawn: pages compute in single precision.
+inline double furthest_drawn(double height) { return std::min(1e7 * height, 1e12); }
+
 /// Mean heading of the figure over its first `frames` frames, from its first left and right nodes; 0 if it
 /// has no sides.
 inline double mean_heading(const Figure& figure, std::size_t frames) {
@@ -112,7 +115,7 @@ inline double ground(const Figure& figure) {
 }  // namespace detail
 
 /// The points and bones of a motion. Throws Error for a motion without frames or joints, or with a position
-/// that is not finite.
+/// that is not finite or too far away to be drawn.
 inline Figure make_figure(const ViewedMotion& viewed) {
   const motion::Motion& m = viewed.motion;
   const std::size_t joints = m.skeleton.size();
@@ -158,12 +161,17 @@ inline Figure make_figure(const ViewedMotion& viewed) {
     }
   }
 
+  const double furthest = detail::furthest_drawn(out.height);
   out.points.reserve(m.frames * sources.size());
   for (std::size_t f = 0; f < m.frames; ++f) {
     for (const auto& [is_tip, index] : sources) {
       const motion::Vec3& p = is_tip ? tips[f * ends.size() + index] : global.positions[f * joints + index];
       require(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]), "the motion '", viewed.title,
               "' has a position that is not a finite number in frame ", f, "; it cannot be drawn");
+      for (const double x : p)
+        require(std::abs(x) <= furthest, "the motion '", viewed.title, "' has a position of ", x,
+                " in frame ", f, ", expected at most ", furthest,
+                " (10 million times the body's height); it cannot be drawn: check the file's root positions");
       out.points.push_back(p);
     }
   }

@@ -6,14 +6,13 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <span>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <vector>
 
 #include "motiongan/core/error.hpp"
+#include "motiongan/formats/text_file.hpp"
 #include "motiongan/generated/view.hpp"
 #include "motiongan/view/figure.hpp"
 
@@ -78,7 +77,8 @@ std::string json_integers(const Range& values) {
 inline std::string json_clip(const ViewedMotion& viewed, double max_rate) {
   const Figure figure = make_figure(viewed);
   // Whole strides, so that every frame shown is an original one.
-  const double excess = std::ceil(figure.rate / max_rate - 1e-6);
+  const double excess =
+      std::min(std::ceil(figure.rate / max_rate - 1e-6), static_cast<double>(figure.frames));
   const std::size_t stride = excess > 1 ? static_cast<std::size_t>(excess) : 1;
   const std::size_t frames = (figure.frames - 1) / stride + 1;
 
@@ -150,26 +150,7 @@ inline std::string player_page(std::span<const ViewedMotion> motions, const Play
 /// Error if the page cannot be made or written.
 inline void write_player(const std::filesystem::path& path, std::span<const ViewedMotion> motions,
                          const PlayerOptions& options = {}) {
-  const std::string page = player_page(motions, options);
-  std::filesystem::path beside = path;
-  beside += ".tmp";
-  std::error_code problem;
-  {
-    std::ofstream out(beside, std::ios::binary);
-    out.write(page.data(), static_cast<std::streamsize>(page.size()));
-    out.close();
-    if (!out) {
-      std::filesystem::remove(beside, problem);
-      throw Error("cannot write the page ", path.string(), " (", page.size(),
-                  " bytes); check that the folder exists, is writable and has free space");
-    }
-  }
-  std::filesystem::rename(beside, path, problem);
-  if (problem) {
-    const std::string reason = problem.message();
-    std::filesystem::remove(beside, problem);
-    throw Error("cannot rename the finished page to ", path.string(), ": ", reason);
-  }
+  motion::write_text_atomically(path, player_page(motions, options));
 }
 
 }  // namespace motiongan::view
