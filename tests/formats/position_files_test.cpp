@@ -96,7 +96,17 @@ TEST_CASE("a bone list names joints and parents") {
   CHECK(says(wrong("Hip\t\n"), "f:1: joint 'Hip' has the parent ''"));
   CHECK(says(wrong("\t-\n"), "f:1: found ''"));
   CHECK(says(wrong("# nothing\n"), "f: found no joints"));
+  std::string many = "j0\t-\n", columns;
+  for (std::size_t j = 1; j < most_joints; ++j) many += concat("j", j, "\tj", j - 1, "\n");
+  CHECK(wrong(many.c_str()) == "no error");
+  CHECK(says(wrong((many + "last\tj0\n").c_str()), "f:10001: found more than 10000 joints"));
+  for (std::size_t j = 0; j <= most_joints; ++j) columns += concat("j", j, ".x,");
+  CHECK(says(message_of([&] { joints_without_bones(columns, false, "c"); }),
+             "c:1: found columns of 10001 joints, expected at most 10000"));
   Skeleton odd = s;
+  odd.joints[1].name = "left\vKnee";  // a blank of the reader, but within the name
+  write_bone_list(folder.path / "bones.tsv", odd);
+  CHECK(read_bone_list(folder.path / "bones.tsv") == odd);
   odd.joints[1].name = "#Knee";
   CHECK(says(message_of([&] { write_bone_list(folder.path / "odd.tsv", odd); }),
              "a joint called '#Knee' cannot be written"));

@@ -117,6 +117,7 @@ class AsfReader {
   void read_bone(const std::string& key) {
     if (key == "begin") {
       if (in_bone_) in_.fail("found 'begin' in a bone, expected 'end' before it");
+      if (bones_.size() >= most_joints) in_.fail("found more than ", most_joints, " bones");
       bones_.emplace_back();
       in_bone_ = true;
       return;

@@ -31,6 +31,7 @@ inline Skeleton parse_bone_list(std::string_view text, std::string_view name) {
             "' before the tab, expected a joint's name");
     require(!parent.empty() && parent.find('\t') == parent.npos, name, ":", line.number, ": joint '", joint,
             "' has the parent '", parent, "', expected one joint's name, or - for the root");
+    require(out.size() < most_joints, name, ":", line.number, ": found more than ", most_joints, " joints");
     require(out.find(joint) < 0, name, ":", line.number, ": joint '", joint,
             "' is listed twice; joint names must be unique");
     Joint entry;

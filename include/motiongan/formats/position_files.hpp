@@ -95,7 +95,8 @@ inline Skeleton joints_without_bones(std::string_view text, bool npy, std::strin
     require((shape.size() == 3 && shape[2] == 3) || (shape.size() == 2 && shape[1] % 3 == 0), name,
             ": the shape is ", shape, ", expected [frames, joints, 3] or [frames, 3 * joints]");
     const std::size_t joints = shape.size() == 3 ? shape[1] : shape[1] / 3;
-    require(joints < 10000, name, ": the shape is ", shape, ", expected fewer than 10000 joints");
+    require(joints <= most_joints, name, ": the shape is ", shape, ", expected at most ", most_joints,
+            " joints");
     for (std::size_t j = 0; j < joints; ++j) names.push_back(concat("joint", j));
   } else {
     const std::string_view header =
@@ -104,6 +105,8 @@ inline Skeleton joints_without_bones(std::string_view text, bool npy, std::strin
     position_csv_detail::split_fields(header, position_csv_detail::separator_of(header), fields);
     for (const std::string_view field : fields)
       if (field.ends_with(".x")) names.emplace_back(field.substr(0, field.size() - 2));
+    require(names.size() <= most_joints, name, ":1: found columns of ", names.size(),
+            " joints, expected at most ", most_joints);
   }
   Skeleton out;
   for (const std::string& joint : names) {

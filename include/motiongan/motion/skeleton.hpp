@@ -35,6 +35,10 @@ struct Joint {
   friend bool operator==(const Joint&, const Joint&) = default;
 };
 
+/// The most joints of a skeleton that comes from a plain list of names; joints are looked up by name, one by
+/// one.
+inline constexpr std::size_t most_joints = 10000;
+
 /// A tree of joints, parents before children, in the order of the BVH file.
 struct Skeleton {
   std::vector<Joint> joints;
