@@ -63,18 +63,18 @@ inline void check_outputs(std::string_view option, const std::vector<std::filesy
               " is an input and would be replaced; choose another place or name");
 }
 
-/// Checks the file that `option` names; empty: none. Throws Error if it is a folder or a device, which
-/// would be replaced by a file, has the ending of another kind of file, which is probably an input, or is one
-/// of `inputs` (see check_outputs).
+/// Checks the file that `option` names; empty: none. A device or a pipe, such as /dev/stdout, is written as
+/// it is. Throws Error if it is a folder, has the ending of another kind of file, which is probably an input,
+/// or is one of `inputs` (see check_outputs).
 inline void check_output(std::string_view option, const std::filesystem::path& file, const OutputKind& kind,
                          const std::vector<std::filesystem::path>& inputs) {
   if (file.empty()) return;
   std::error_code problem;
+  using enum std::filesystem::file_type;
   const std::filesystem::file_type there = std::filesystem::status(file, problem).type();
-  require(there != std::filesystem::file_type::directory, option, " ", file.string(),
-          " is a folder, expected the name of a file");
-  require(there == std::filesystem::file_type::regular || there == std::filesystem::file_type::not_found,
-          option, " ", file.string(), " is a device, a pipe or out of reach, expected the name of a file");
+  require(there != directory, option, " ", file.string(), " is a folder, expected the name of a file");
+  require(there == regular || there == not_found || there == character || there == fifo, option, " ",
+          file.string(), " cannot be reached or written, expected the name of a file");
   const std::string ending = motion::extension_of(file);
   const auto is_ending = [&](std::string_view known) { return known == ending; };
   for (const std::string_view known : {".bvh", ".amc", ".asf", ".npz", ".npy", ".safetensors", ".csv", ".tsv",

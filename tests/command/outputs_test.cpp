@@ -39,7 +39,7 @@ TEST_CASE("an output is no input, whatever it is called") {
   CHECK(refusal("page", page_output, {"clips", "", "missing"}) == "no error");
   CHECK(refusal("new.html", page_output, {"page"}) == "no error");
   CHECK(refusal("", page_output, {"page"}) == "no error");
-  CHECK(says(refusal("/dev/null", table_output), "--out /dev/null is a device"));
+  CHECK(refusal("/dev/null", table_output) == "no error");
   fs::create_symlink("nowhere", "dangling");
   CHECK(refusal("dangling", page_output) == "no error");
   CHECK(says(refusal("clips", page_output), "--out clips is a folder, expected the name of a file"));

@@ -107,3 +107,15 @@ TEST_CASE("output that cannot be written is an error") {
   }
   CHECK(shell(command + " devices 2>&1 >/dev/full").has("No space left on device"));
 }
+
+TEST_CASE("a table can go to standard output and to a pipe") {
+  const TestFolder folder;
+  REQUIRE(call("synth clips --clips 2 --seconds 4").status == 0);
+  const Said said = call("compare clips clips --csv /dev/stdout");
+  CHECK_MESSAGE(said.status == 0, said.text);
+  CHECK(said.has(","));
+  CHECK(shell("mkfifo pipe; cat pipe > copy & " + command + " compare clips clips --csv pipe; wait").status ==
+        0);
+  CHECK(bytes_of("copy").size() > 100);
+  CHECK(fs::is_fifo("pipe"));
+}
