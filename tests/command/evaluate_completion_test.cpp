@@ -26,6 +26,14 @@ TEST_CASE("all models are trained and measured, the published rows beside; a sec
   const TestFolder folder;
   motiongan::testing::write_small_h36m("h36m");
   const std::string whole = "evaluate completion h36m --save out --iterations 2 --dvgan-iterations 2";
+  const Said dry = call(whole + tiny_models + " --dry-run");
+  CHECK_MESSAGE(dry.status == 0, dry.text);
+  for (const char* name :
+       {"lstm\n", "seq2seq\n", "erd\n", "lstm-3lr\n", "dvgan\n", "  critic ", " for 2 iterations"})
+    CHECK_MESSAGE(dry.has(name), std::string(name), dry.text);
+  CHECK_FALSE(fs::exists("out"));
+  CHECK(call(whole + " --batch 100000000").has("this training does not fit"));
+  fs::remove_all("out");
   const Said said = call(whole + tiny_models);
   REQUIRE_MESSAGE(said.status == 0, said.text);
   CHECK(said.has("h36m: 15 columns, 14 of which vary"));

@@ -63,6 +63,7 @@ TEST_CASE("steps and iterations that would overflow") {
 
 TEST_CASE("a training that does not fit is refused at once, with what is needed and what to lower") {
   const TestFolder folder;
+  refused("train dvgan --procedural 4 --hidden 100000000", "--hidden: expected 1 to 65536, not 100000000");
   const std::string train = "train dvgan --procedural 4 --frames 16 --save run ";
   for (const std::string size : {"--batch 100000000", "--batch 18446744073709551615", "--hidden 65536"}) {
     CAPTURE(size);
@@ -72,7 +73,6 @@ TEST_CASE("a training that does not fit is refused at once, with what is needed 
     CHECK(said.has("lower --batch (now "));
     CHECK_FALSE(fs::exists("run/checkpoint.safetensors"));
   }
-  refused("train dvgan --procedural 4 --hidden 100000000", "--hidden: expected 1 to 65536, not 100000000");
   const Said limited =
       shell("MOTIONGAN_MEMORY_MB=1 '" MOTIONGAN_COMMAND "' " + train + "--hidden 16 --batch 4");
   CHECK(limited.status == 1);
@@ -89,7 +89,7 @@ TEST_CASE("a dry run says what a training takes, and writes nothing") {
     CAPTURE(arguments);
     const Said said = call(arguments + " --dry-run");
     CHECK(said.status == 0);
-    for (const char* fact : facts) CHECK_MESSAGE(said.has(fact), fact, "\n", said.text);
+    for (const char* fact : facts) CHECK_MESSAGE(said.has(fact), std::string(fact), said.text);
     CHECK(fs::is_empty(fs::current_path()));
   };
   const std::string small = " --procedural 8 --hidden 16 --batch 4 ";
@@ -100,10 +100,12 @@ TEST_CASE("a dry run says what a training takes, and writes nothing") {
   dry("train ranker --frames 16" + small, {"  ranker ", "  time ", " for 2000 iterations"});
   dry("train attention --frames 8" + small, {"  generator ", "  critic ", "  classifier ", "  time "});
   dry("train attention --frames 8 --model lstm" + small, {"  generator ", "  time "});
-  dry("ablate dvgan --frames 16 --variants cnn-cnn,rnn-rnn --ranker-hidden 16 --critic-steps 1 --save s" +
+  dry("ablate dvgan --frames 16 --variants cnn-cnn-final,rnn-rnn --ranker-hidden 16 --critic-steps 1 --save "
+      "s" +
           small,
-      {"ranker\n", "cnn-cnn\n", "rnn-rnn\n", " for 300 iterations", " for 600 iterations"});
-  dry("ablate attention --frames 8 --variants full,lstm --future 8 --save s" + small,
+      {"ranker\n", "cnn-cnn-final\n", "rnn-rnn\n", " for 300 iterations", " for 600 iterations"});
+  dry("ablate attention --frames 8 --variants full,lstm --future 8 --save s --procedural 34 --hidden 16 "
+      "--batch 4",
       {"full\n", "lstm\n", "  classifier ", " an iteration ("});
 }
 
