@@ -43,7 +43,7 @@ TEST_CASE("buffers that fail end a training with an error; it resumes to the sam
   const std::string train = "train dvgan --procedural 6" + tiny;
   REQUIRE(call(train + "--save whole --iterations 3").status == 0);
   const auto fails = [&](int n, const std::string& arguments) {
-    const Said said = call_with("MOTIONGAN_FAIL_ALLOCATION=" + std::to_string(n), arguments);
+    Said said = call_with("MOTIONGAN_FAIL_ALLOCATION=" + std::to_string(n), arguments);
     CAPTURE(n);
     CAPTURE(said.text);
     CHECK(said.status == 1);

@@ -133,10 +133,11 @@ TEST_CASE("an error names the call, the code, the device and what to do") {
                      {CL_DEVICE_NOT_AVAILABLE, "CL_DEVICE_NOT_AVAILABLE (-2)", "was lost"},
                      {-9999, "-9999", "was lost"},
                      {-777, "unknown OpenCL error (-777)", "on "}};
-  for (const auto& [code, name, advice] : codes) {
+  for (const auto& expected : codes) {
+    const char* const name = expected.name;
     CAPTURE(name);
     for (const bool reads : {false, true}) {
-      (reads ? faults.read : faults.write) = code;
+      (reads ? faults.read : faults.write) = expected.code;
       const std::string text = message_of([&] {
         if (reads)
           x.to_host();
@@ -147,7 +148,7 @@ TEST_CASE("an error names the call, the code, the device and what to do") {
       CAPTURE(text);
       CHECK(says(text, concat(reads ? "clEnqueueReadBuffer" : "clEnqueueWriteBuffer", " failed with ")));
       CHECK(says(text, name));
-      CHECK(says(text, advice));
+      CHECK(says(text, expected.advice));
       CHECK(says(text, "on " + context.device().name));
     }
   }
@@ -162,7 +163,7 @@ TEST_CASE("what the driver reports, from any thread, is in the error of the next
   const Tensor x(context, {4});
   const auto read_fails = [&] {
     faults.read = CL_OUT_OF_RESOURCES;
-    const std::string text = message_of([&] { x.to_host(); });
+    std::string text = message_of([&] { x.to_host(); });
     faults.read = CL_SUCCESS;
     return text;
   };

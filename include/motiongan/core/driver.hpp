@@ -27,7 +27,9 @@ class DriverMessages {
   }
 
   /// The last two arguments of clCreateContext's callback: `receive` with `user_data()`.
-  void* user_data() const { return reinterpret_cast<void*>(number_); }
+  void* user_data() const {
+    return reinterpret_cast<void*>(number_);  // NOLINT(performance-no-int-to-ptr): it is never followed
+  }
   static void CL_CALLBACK receive(const char* text, const void*, std::size_t, void* user_data) noexcept {
     try {
       const std::lock_guard hold(shared().lock);
