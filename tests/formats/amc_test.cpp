@@ -251,7 +251,7 @@ TEST_CASE("invalid .asf files are errors with their line") {
   CHECK(says(message_of([] { parse_asf("HIERARCHY\nROOT Hips\n", "a.bvh"); }), "is this an .asf file?"));
   std::string many = "end\n";
   for (int i = 0; i < 10000; ++i) many += concat("begin\nname b", i, "\ndirection 0 1 0\nlength 1\nend\n");
-  CHECK(says(asf_refusal("end\n", many), "found more than 10000 bones"));
+  CHECK(says(asf_refusal("  end\n", many), "found more than 10000 bones"));
 }
 
 TEST_CASE("invalid .amc files are errors with their line") {

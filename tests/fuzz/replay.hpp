@@ -36,7 +36,7 @@ inline std::size_t replay(const Target& target, const char* kind) {
     try {
       accepted += accepts(target, bytes_of(file));
     } catch (const std::exception& error) {
-      FAIL_CHECK(error.what());
+      FAIL_CHECK(std::string(error.what()));
     }
   }
   return accepted;

@@ -84,6 +84,21 @@ TEST_CASE("a device is written directly and stays") {
   CHECK(fs::is_character_file("/dev/null"));
 }
 
+TEST_CASE("a file in the memory folder of /dev is a file like any other") {
+  const fs::path path = concat("/dev/shm/motiongan_atomic_file_test.", ::getpid());
+  if (::access("/dev/shm", W_OK) != 0) {
+    MESSAGE("skipped: /dev/shm cannot be written");
+    return;
+  }
+  for (const char* const text : {"a longer text", "new"}) {
+    AtomicFile file(path);
+    file.write(text);
+    file.commit();
+    CHECK(bytes_of(path) == text);
+  }
+  fs::remove(path);
+}
+
 TEST_CASE("left-over files are told by their names") {
   CHECK(is_left_over("log.csv.12-0.tmp", "log.csv"));
   CHECK(is_left_over("log.csv.x.tmp", "log.csv"));

@@ -23,7 +23,8 @@ class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path path) : path_(std::move(path)), beside_(path_) {
     struct stat found {};
-    direct_ = path_.native().starts_with("/dev/") ||
+    // Not all of /dev: /dev/shm is a folder of ordinary files.
+    direct_ = path_.parent_path() == "/dev" || path_.parent_path() == "/dev/fd" ||
               (::stat(path_.c_str(), &found) == 0 && !S_ISREG(found.st_mode) && !S_ISDIR(found.st_mode));
     if (direct_) {
       file_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
