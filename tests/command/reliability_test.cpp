@@ -16,7 +16,7 @@ const std::string train = "train dvgan --procedural 6 --log-every 1" + tiny;
 /// Starts a training, waits for rows of its log, and then runs `then`, in which $pid is its process.
 Said while_training(const std::string& then, const std::string& before = "", const std::string& after = "") {
   return shell(
-      before + command + " " + train + " --save run " + after +
+      before + in_background + train + " --save run " + after +
       " & pid=$!; for i in $(seq 600); do [ $(cat run/log.csv 2>/dev/null | wc -l) -gt 3 ] && break; "
       "sleep 0.05; done; " +
       then);
@@ -111,11 +111,12 @@ TEST_CASE("output that cannot be written is an error") {
 TEST_CASE("a table can go to standard output and to a pipe") {
   const TestFolder folder;
   REQUIRE(call("synth clips --clips 2 --seconds 4").status == 0);
-  const Said said = call("compare clips clips --csv /dev/stdout");
+  const Said said = call("compare --generated clips --real clips --csv /dev/stdout");
   CHECK_MESSAGE(said.status == 0, said.text);
   CHECK(said.has(","));
-  CHECK(shell("mkfifo pipe; cat pipe > copy & " + command + " compare clips clips --csv pipe; wait").status ==
-        0);
+  CHECK(shell("mkfifo pipe; timeout 60 cat pipe > copy & " + command +
+              " compare --generated clips --real clips --csv pipe; wait")
+            .status == 0);
   CHECK(bytes_of("copy").size() > 100);
   CHECK(fs::is_fifo("pipe"));
 }
