@@ -112,7 +112,7 @@ TEST_CASE("a damaged checkpoint is an error, a run that diverges is reported and
   whole.write(checkpoint_file);
   const Said diverged =
       call(small + " --variants full,lstm --save wild --iterations 40 --learning-rate 1e30");
-  CHECK_MESSAGE(diverged.has("full: training diverged at iteration"), diverged.text);
+  CHECK_MESSAGE(diverged.has("full: training diverged by iteration"), diverged.text);
   CHECK_MESSAGE(diverged.has("lstm: training for"), diverged.text);
 }
 

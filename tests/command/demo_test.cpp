@@ -53,5 +53,5 @@ TEST_CASE("help and usage") {
   CHECK(call("dance").status > 1);
   const TestFolder folder;
   CHECK(call("synth out --clips 0").status == 1);
-  CHECK(call("synth out --seconds -1").status == 1);
+  CHECK(call("synth out --seconds -1").status > 100);
 }

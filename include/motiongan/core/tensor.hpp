@@ -75,6 +75,8 @@ class Tensor {
   std::size_t dim(std::size_t i) const { return shape_.at(i); }
   std::size_t rank() const { return shape_.size(); }
   cl_mem buffer() const { return storage_->buffer(); }
+  /// Whether both are parts of one memory; in a context that only counts, buffer() does not tell.
+  bool shares_memory(const Tensor& other) const { return storage_ == other.storage_; }
   /// Index of the first element within the buffer.
   std::size_t offset() const { return offset_; }
 

@@ -66,7 +66,7 @@ class Optimizer {
     std::size_t at = 0;
     for (const Var& p : parameters_) {
       const Tensor& value = p.value();
-      if (value.buffer() != values_.buffer() || value.offset() != at) {
+      if (!value.shares_memory(values_) || value.offset() != at) {
         const Tensor place = values_.view(at, p.shape());
         detail::copy_tensor(value, place);
         p.node()->value = place;
