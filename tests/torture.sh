@@ -41,14 +41,13 @@ run() { # run KIND FOLDER [resume]
     dvgan) set -- train dvgan ${3:+--resume} $dvgan --save "$folder" --iterations 300 $save ;;
     ranker) set -- train ranker ${3:+--resume} --procedural 6 --frames 16 --hidden 16 --batch 4 --save "$folder" --iterations 300 $save ;;
     attention) set -- train attention ${3:+--resume} --procedural 6 --frames 8 --hidden 16 --batch 4 --critic-steps 1 --save "$folder" --iterations 200 $save ;;
-    baseline) set -- ablate attention --procedural 6 --variants lstm --frames 8 --hidden 16 --batch 4 --windows 2 --future 8 --save "$folder" --iterations 200 $save ;;
+    baseline) set -- train attention ${3:+--resume} --model lstm --procedural 6 --frames 8 --hidden 16 --batch 4 --save "$folder" --iterations 200 $save ;;
     prediction) set -- evaluate completion "$work/maps" --models seq2seq --hidden 8 --batch 2 --save "$folder" --iterations 200 $save ;;
   esac
   exec "$command" "$@" >"$log" 2>&1
 }
 checkpoint_of() {
   case $1 in
-    baseline) echo "$2/lstm/checkpoint.safetensors" ;;
     prediction) echo "$2/seq2seq/checkpoint.safetensors" ;;
     *) echo "$2/checkpoint.safetensors" ;;
   esac
