@@ -6,7 +6,8 @@
 typedef uint16 uintv;
 typedef float16 floatv;
 
-static inline void philox(uintv* counter0, uintv* counter1, uintv* counter2, uintv* counter3, uint key0, uint key1) {
+static inline void philox(uintv* counter0, uintv* counter1, uintv* counter2, uintv* counter3, uint key0,
+                          uint key1) {
   uintv a = *counter0, b = *counter1, c = *counter2, d = *counter3;
   for (int round = 0; round < 10; ++round) {
     const uintv high0 = mul_hi(a, (uintv)(0xD2511F53u)), low0 = a * 0xD2511F53u;
@@ -30,8 +31,8 @@ static inline floatv unit(uintv bits) { return (convert_float16(bits >> 9) + 0.5
 /// Block number `block` of a row, 64 standard normal numbers by Box-Muller, of which the first `left` are
 /// written. Lane l uses counter (block*16 + l, frame, sample, stream_step); its four words give the channels
 /// block*64 + 16*q + l, q = 0 .. 3.
-static inline void normal_block(global real* p, uint left, uint block, uint frame, uint sample, uint stream_step,
-                         uint seed0, uint seed1) {
+static inline void normal_block(global real* p, uint left, uint block, uint frame, uint sample,
+                                uint stream_step, uint seed0, uint seed1) {
   const uintv lane = (uintv)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
   uintv a = lane + block * 16, b = (uintv)(frame), c = (uintv)(sample), d = (uintv)(stream_step);
   philox(&a, &b, &c, &d, seed0, seed1);
