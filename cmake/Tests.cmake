@@ -7,7 +7,7 @@ endif()
 
 # An object library, because the linker may drop main() from a static library.
 add_library(test_main OBJECT "${PROJECT_SOURCE_DIR}/tests/main.cpp")
-target_link_libraries(test_main PUBLIC doctest::doctest)
+target_link_libraries(test_main PUBLIC doctest::doctest PRIVATE motiongan)
 
 # own_test(<name> <label> <command>...): registers a test with the label and the common time limit.
 function(own_test name label)

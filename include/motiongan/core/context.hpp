@@ -10,6 +10,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <utility>
 #include <vector>
@@ -36,6 +37,36 @@ constexpr std::size_t most_elements = (std::size_t{1} << 32) - (std::size_t{1} <
 
 namespace detail {
 
+/// The queues of all contexts of the process; see finish_all_contexts().
+class LiveQueues {
+ public:
+  static void add(cl_command_queue queue) {
+    LiveQueues& live = instance();
+    const std::lock_guard hold(live.mutex_);
+    live.queues_.push_back(queue);
+  }
+  static void remove(cl_command_queue queue) noexcept {
+    LiveQueues& live = instance();
+    const std::lock_guard hold(live.mutex_);
+    std::erase(live.queues_, queue);
+  }
+  static void finish() {
+    LiveQueues& live = instance();
+    const std::lock_guard hold(live.mutex_);
+    for (const cl_command_queue queue : live.queues_) clFinish(queue);
+  }
+
+ private:
+  /// Never destroyed: contexts that are global variables use it at the end.
+  static LiveQueues& instance() {
+    static LiveQueues* const live = new LiveQueues;
+    return *live;
+  }
+
+  std::mutex mutex_;
+  std::vector<cl_command_queue> queues_;
+};
+
 struct ContextState {
   Device device;
   Precision precision = Precision::f32;
@@ -61,6 +92,7 @@ struct ContextState {
   ClEvent marker;
 
   ~ContextState() {
+    if (queue) LiveQueues::remove(queue.get());
     if (queue) clFinish(queue.get());  // a failure here has nobody to report it to
     for (const auto& [name, time] : kernel_times)
       std::fprintf(stderr, "%10.3f ms %8zu launches  %s\n", time.nanoseconds / 1e6, time.launches,
@@ -99,7 +131,8 @@ class Storage {
 }  // namespace detail
 
 /// One device with its queue, programs and buffer pool. A cheap handle: copies share one context.
-/// Not thread-safe: use one Context per thread.
+/// Not thread-safe: use one Context per thread. If one is a global variable, call finish_all_contexts() at
+/// the end of main().
 class Context {
  public:
   /// The device of MOTIONGAN_DEVICE (see choose_device), in single precision.
@@ -127,6 +160,7 @@ class Context {
     s.queue = ClQueue(clCreateCommandQueue(s.context.get(), s.device.id,
                                            s.profiling ? CL_QUEUE_PROFILING_ENABLE : 0, &code));
     s.driver.check(code, "clCreateCommandQueue");
+    detail::LiveQueues::add(s.queue.get());
     std::size_t limit = options.memory_limit;
     if (limit == 0)
       limit = 1'000'000 * detail::environment_count("MOTIONGAN_MEMORY_MB", "megabytes",
@@ -320,5 +354,10 @@ class Interruptible {
   Context context_;
   const std::function<bool()>* before_;
 };
+
+/// Waits for the work of all contexts of the process. For the end of main() in a program whose Context is a
+/// global variable: such a context outlives parts of the driver, and PoCL crashes if a thread of its own
+/// still builds a kernel then.
+inline void finish_all_contexts() { detail::LiveQueues::finish(); }
 
 }  // namespace motiongan
