@@ -60,7 +60,7 @@ fail() {
 
 filler() { # fills and empties the disk
   while :; do
-    head -c 2g /dev/zero >"$disk/filler" 2>/dev/null
+    head -c 2G /dev/zero >"$disk/filler" 2>/dev/null
     sleep 0.$((RANDOM % 10))
     rm -f "$disk/filler"
     sleep 0.$((RANDOM % 10 + 3))
