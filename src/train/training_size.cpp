@@ -68,7 +68,7 @@ void require_fits(const Context& context, const TrainingCost& cost, bool on_devi
                     advice = "; lower " + lower;
   const Device& device = context.device();
   const double largest = std::min(static_cast<double>(device.max_allocation),
-                                  4294967295.0 * static_cast<double>(context.real_size()));
+                                  static_cast<double>(context.element_limit() * context.real_size()));
   require(on_device, need, " on the device, ", size_text(cost.largest_buffer), " of it in one buffer; ",
           device.name, " has ", limit_text(context), ", and at most ", size_text(largest), " for a buffer",
           advice);

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <memory>
 
+#include "../support/folders.hpp"
 #include "../support/messages.hpp"
 #include "motiongan/io/folder_lock.hpp"
 #include "motiongan/io/safetensors.hpp"
@@ -20,15 +21,6 @@ using namespace motiongan::testing;
 namespace fs = std::filesystem;
 
 namespace {
-
-struct Scratch {
-  fs::path path = fs::temp_directory_path() / "motiongan_atomic_file_test";
-  Scratch() {
-    fs::remove_all(path);
-    fs::create_directories(path);
-  }
-  ~Scratch() { fs::remove_all(path); }
-};
 
 std::string bytes_of(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <motiongan/models/prediction_model.hpp>
 
+#include "../support/folders.hpp"
 #include "../support/messages.hpp"
 
 using namespace motiongan;
@@ -41,15 +42,6 @@ void fill_with(const NamedParameter& p, float value) {
   Tensor place = p.value->value();
   place.write(std::span<const float>(std::vector<float>(place.size(), value)));
 }
-
-struct Scratch {
-  fs::path path = fs::temp_directory_path() / "motiongan_prediction_models_test";
-  Scratch() {
-    fs::remove_all(path);
-    fs::create_directories(path);
-  }
-  ~Scratch() { fs::remove_all(path); }
-};
 
 }  // namespace
 

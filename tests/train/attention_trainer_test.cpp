@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 
+#include "../support/folders.hpp"
 #include "../support/small_actions.hpp"
 
 using namespace motiongan;
@@ -33,12 +34,6 @@ std::vector<std::vector<float>> state(AttentionTrainer& trainer) {
   }
   return all;
 }
-
-struct Scratch {
-  fs::path path = fs::temp_directory_path() / "motiongan_attention_trainer_test";
-  Scratch() { fs::remove_all(path); }
-  ~Scratch() { fs::remove_all(path); }
-};
 
 }  // namespace
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <motiongan/train/train.hpp>
 
+#include "../support/folders.hpp"
 #include "../support/small_data.hpp"
 
 using namespace motiongan;
@@ -15,16 +16,6 @@ namespace fs = std::filesystem;
 namespace {
 
 const DvganTrainOptions small_options{.iterations = 6, .critic_steps = 2, .batch = 3};
-
-/// A temporary folder, removed at the end of the test.
-struct Scratch {
-  fs::path path = fs::temp_directory_path() / "motiongan_checkpoint_test";
-  Scratch() {
-    fs::remove_all(path);
-    fs::create_directories(path);
-  }
-  ~Scratch() { fs::remove_all(path); }
-};
 
 struct Run {
   Context context;

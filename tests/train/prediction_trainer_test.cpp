@@ -5,6 +5,7 @@
 #include <fstream>
 #include <motiongan/train/train.hpp>
 
+#include "../support/folders.hpp"
 #include "../support/small_actions.hpp"
 
 using namespace motiongan;
@@ -61,15 +62,6 @@ std::vector<std::vector<float>> state(PredictionTrainer& trainer) {
     all.push_back(tensor.to_host());
   return all;
 }
-
-struct Scratch {
-  fs::path path = fs::temp_directory_path() / "motiongan_prediction_trainer_test";
-  Scratch() {
-    fs::remove_all(path);
-    fs::create_directories(path);
-  }
-  ~Scratch() { fs::remove_all(path); }
-};
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include <motiongan/train/train.hpp>
 #include <stdexcept>
 
+#include "../support/folders.hpp"
 #include "../support/small_data.hpp"
 
 using namespace motiongan;
@@ -14,15 +15,6 @@ using namespace motiongan::testing;
 namespace fs = std::filesystem;
 
 namespace {
-
-struct Scratch {
-  fs::path path = fs::temp_directory_path() / "motiongan_run_folder_test";
-  Scratch() {
-    fs::remove_all(path);
-    fs::create_directories(path);
-  }
-  ~Scratch() { fs::remove_all(path); }
-};
 
 /// Trains a small model in one folder, as often as it is called.
 struct Run {

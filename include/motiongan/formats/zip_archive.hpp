@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
+#include "motiongan/io/checksum.hpp"
 
 namespace motiongan::motion {
 
@@ -136,7 +137,9 @@ class ZipArchive {
   }
 
   static std::uint32_t checksum(std::string_view bytes) {
-    return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+    io::Checksum sum;
+    sum.add(bytes.data(), bytes.size());
+    return sum.value();
   }
 
   std::string_view bytes_;

@@ -103,7 +103,8 @@ TrainingCost training_cost(const Context& like, const TrainOptions& options, con
 template <class TrainOptions, class Build>
 bool fits_device(const Context& context, const TrainOptions& options, const Build& build,
                  const TrainingCost& cost) {
-  if (cost.largest_buffer / static_cast<double>(context.real_size()) > 4294967295.0) return false;  // cl_uint
+  const double elements = static_cast<double>(context.element_limit());
+  if (cost.largest_buffer > elements * static_cast<double>(context.real_size())) return false;
   if (cost.device_in_use <= static_cast<double>(context.memory_limit()) &&
       cost.largest_buffer <= static_cast<double>(context.device().max_allocation))
     return true;
