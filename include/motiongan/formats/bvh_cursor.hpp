@@ -141,9 +141,10 @@ class Cursor {
                                     text_.begin() + static_cast<std::ptrdiff_t>(stop), is_blank);
       if (after_blank || last) stop = p;
     }
+    // A name does not end with a brace: `a{ {` opens twice, which is an error of the next word.
     std::string_view name = text_.substr(at_, stop - at_);
-    while (!name.empty() && is_blank(name.back())) name.remove_suffix(1);
-    at_ = stop;
+    while (!name.empty() && (is_blank(name.back()) || name.back() == '{')) name.remove_suffix(1);
+    at_ += name.size();
     return name;
   }
 
