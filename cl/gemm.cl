@@ -142,19 +142,3 @@ kernel void gemm_finish(global real* c, uint c_first, global const real* bias, u
   global real* at = c + c_first + batch * batch_stride + i * c_stride + j;
   *at = finish_one(*at, flags, bias + bias_first + j, residual + residual_first + i * residual_stride + j);
 }
-
-// out[j][i] = x[i][j]. Work-items: blocks of VW x VW elements of x, in row-major order.
-kernel void transpose(global const real* x, uint x_first, uint x_row, uint rows, uint columns,
-                      global real* out, uint out_first, uint out_row) {
-  const uint across = (columns + VW - 1) / VW, item = get_global_id(0);
-  const uint i = item / across * VW, j = item % across * VW;
-  if (i >= rows) return;
-  real square[VW * VW], line[VW];
-  const uint high = min(rows - i, (uint)VW), wide = min(columns - j, (uint)VW);
-  for (uint r = 0; r < high; ++r)
-    vstore(load_some(x + x_first + (i + r) * x_row + j, columns - j), r, square);
-  for (uint c = 0; c < wide; ++c) {
-    for (uint r = 0; r < high; ++r) line[r] = square[r * VW + c];
-    store_some(vload(0, line), out + out_first + (j + c) * out_row + i, rows - i);
-  }
-}

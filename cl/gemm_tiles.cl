@@ -43,6 +43,14 @@ typedef real4 anywhere4 __attribute__((aligned(REAL_BYTES)));
 #define WRITE(p, value) vstore(value, 0, p)
 #endif
 
+// Rows that lie a few kilobytes apart are not fetched ahead by the processor itself.
+#if defined(DEVICE_IS_CPU) && defined(__clang__)
+#define PREFETCH(p) __builtin_prefetch((const void*)(size_t)(p))
+#else
+#define PREFETCH(p)
+#endif
+#define ROWS_AHEAD 8
+
 #define LOAD(i) realv x##i = tile[2 * i], y##i = tile[2 * i + 1];
 #define STORE(i) tile[2 * i] = x##i, tile[2 * i + 1] = y##i;
 #define FMA(i)                             \
@@ -95,6 +103,8 @@ static inline void pack_rows(global const real* b, size_t stride, uint count, ui
     global const real* from = b;
     realv* to = packed;
     for (uint w = 0; w < panels; ++w, from += COLUMNS, to += panel_stride) {
+      PREFETCH(from + ROWS_AHEAD * stride);
+      PREFETCH(from + ROWS_AHEAD * stride + VW);
       to[0] = READ(from);
       to[1] = READ(from + VW);
     }
@@ -153,6 +163,9 @@ static inline void load_tile(global const real* c, size_t stride, uint rows, uin
     if (width == COLUMNS) {
       tile[0] = READ(c);
       tile[1] = READ(c + VW);
+    } else if (width >= VW) {  // the second vector ends with the panel; the first overwrites what they share
+      vstore(READ(c + width - VW), 0, (real*)tile + width - VW);
+      tile[0] = READ(c);
     } else {
       for (uint j = 0; j < width; ++j) ((real*)tile)[j] = c[j];
     }

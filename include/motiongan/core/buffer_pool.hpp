@@ -78,7 +78,8 @@ class BufferPool {
   void give_back(ClBuffer buffer, std::size_t granted) noexcept {
     statistics_.bytes_in_use -= granted;
     try {
-      free_.emplace(granted, std::move(buffer));
+      // Before its equals: the buffer used last, which the caches may still hold, is taken first.
+      free_.emplace_hint(free_.lower_bound(granted), granted, std::move(buffer));
       statistics_.bytes_cached += granted;
     } catch (const std::bad_alloc&) {
     }

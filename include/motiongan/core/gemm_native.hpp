@@ -1,4 +1,5 @@
-// The native backend of gemm(): the kernels of cl/gemm.cl and cl/gemm_packed.cl, written for CPU devices.
+// The native backend of gemm(): the kernels of cl/gemm.cl, cl/gemm_outer.cl and cl/gemm_packed.cl, written
+// for CPU devices. They differ in speed only.
 #pragma once
 #include <algorithm>
 
@@ -53,6 +54,19 @@ inline GemmSplit split_packed(const Context& context, const GemmCall& g) {
   return {(rows + tile - 1) / tile * tile, 1, 1};
 }
 
+/// The same for a transposed A, of which each group packs its rows (cl/gemm_outer.cl): many rows and panels
+/// in a group, so that packing is shared, but enough groups for all cores.
+inline GemmSplit split_outer(const Context& context, const GemmCall& g) {
+  const std::size_t tile = 12, panels = gemm_panels(context, g);
+  const std::size_t most = context.device().is_cpu() ? 8 * tile : tile;  // at most OUTER_ROWS
+  const std::size_t wanted = 4 * context.device().compute_units;
+  std::size_t rows = most, at_once = std::min<std::size_t>(panels, 4);
+  const auto groups = [&] { return (g.m + rows - 1) / rows * ((panels + at_once - 1) / at_once) * g.batch; };
+  while (at_once > 1 && groups() < wanted) at_once /= 2;
+  while (rows > 2 * tile && groups() < wanted) rows = (rows / 2 + tile - 1) / tile * tile;
+  return {rows, at_once, 1};
+}
+
 /// Mirrors struct Numbers in cl/gemm_tiles.cl, field by field.
 struct GemmNumbers {
   cl_uint m, n, k, segments, flags;
@@ -67,13 +81,16 @@ struct GemmNumbers {
 };
 inline void add_argument(KernelArguments& to, const GemmNumbers& numbers) { to.set(numbers); }
 
-inline void launch_gemm(const Context& context, const GemmCall& g) {
+inline void gemm_native(const Context& context, const GemmCall& g) {
   // Only strides of dimensions of size 1, which are never used, can exceed 32 bits; see check_gemm.
   const auto narrow = [](std::size_t value) { return static_cast<cl_uint>(value); };
   const auto first = [&](const Tensor& t) { return t.empty() ? 0 : narrow(t.offset()); };
   const auto buffer = [&](const Tensor& t) { return t.empty() ? g.c.buffer() : t.buffer(); };
   const bool is_packed = !g.b_panels.empty();
-  const GemmSplit split = is_packed ? split_packed(context, g) : split_gemm(context, g);
+  const bool outer = g.a_transposed && g.m > 1;
+  const GemmSplit split = is_packed ? split_packed(context, g)
+                          : outer   ? split_outer(context, g)
+                                    : split_gemm(context, g);
   GemmNumbers to{};
   to.m = narrow(g.m), to.n = narrow(g.n), to.k = narrow(g.k);
   to.segments = narrow(g.segments), to.flags = gemm_flags(g);
@@ -92,7 +109,8 @@ inline void launch_gemm(const Context& context, const GemmCall& g) {
   const LaunchGrid grid =
       LaunchGrid::groups((g.n + columns - 1) / columns, (g.m + split.rows - 1) / split.rows, g.batch);
   if (!is_packed) {
-    context.launch("gemm", "gemm", grid, buffer(g.a), buffer(g.b), g.c.buffer(), buffer(g.bias),
+    const char* kernel = outer ? "gemm_outer" : "gemm";  // each in a file of its own
+    context.launch(kernel, kernel, grid, buffer(g.a), buffer(g.b), g.c.buffer(), buffer(g.bias),
                    buffer(g.residual), to);
     return;
   }
@@ -103,48 +121,6 @@ inline void launch_gemm(const Context& context, const GemmCall& g) {
   context.launch("gemm_packed", "gemm_packed", grid, buffer(g.a), g.b_panels.buffer(), g.c.buffer(),
                  buffer(g.bias), buffer(g.residual), to, buffer(g.rectified),
                  first(g.rectified) + narrow(g.rectified_offset));
-}
-
-/// out[j][i] = x[i][j], each with its own leading dimension.
-inline void launch_transpose(const Context& context, const At& x, std::size_t ld, std::size_t rows,
-                             std::size_t columns, const At& out, std::size_t out_ld) {
-  const auto pieces = [&](std::size_t n) {
-    return (n + context.vector_width() - 1) / context.vector_width();
-  };
-  context.launch("gemm", "transpose", LaunchGrid::items(pieces(rows) * pieces(columns)), x, ld, rows, columns,
-                 out, out_ld);
-}
-
-/// A transposed A is read by columns, once per tile and panel. With long rows every element of a column lies
-/// in a different page, so A is transposed first; or, if B has shorter rows and there is no epilogue, A and B
-/// are swapped and C is transposed (unless B's rows are whole pages: all elements of a column would map to
-/// the same few cache lines). The result is bit-identical in every case.
-inline void gemm_native(const Context& context, const GemmCall& wanted) {
-  const bool far = wanted.a_transposed && wanted.segments == 1 && wanted.batch == 1 && wanted.a_ld >= 512 &&
-                   wanted.m >= 64 && wanted.n >= 64 && wanted.k >= 256;
-  if (!far) return launch_gemm(context, wanted);
-  GemmCall g = wanted;
-  const bool only_product =
-      !g.accumulate && g.bias.empty() && g.residual.empty() && !g.relu && !g.b_transposed;
-  constexpr std::size_t page = 4096;
-  if (only_product && g.b_ld < g.a_ld && g.b_ld * context.real_size() % page != 0) {
-    g.a = wanted.b, g.b = wanted.a;
-    g.a_ld = wanted.b_ld, g.b_ld = wanted.a_ld;
-    g.a_offset[0] = wanted.b_offset[0], g.b_offset[0] = wanted.a_offset[0];
-    g.m = wanted.n, g.n = wanted.m;
-    g.c = Tensor(context, {g.m, g.n});
-    g.c_offset = 0;
-    g.c_ld = g.n;
-    launch_gemm(context, g);
-    return launch_transpose(context, {g.c, 0}, g.n, g.m, g.n, {wanted.c, wanted.c_offset}, wanted.c_ld);
-  }
-  const Tensor turned(context, {g.m, g.k});
-  launch_transpose(context, {g.a, g.a_offset[0]}, g.a_ld, g.k, g.m, {turned, 0}, g.k);
-  g.a = turned;
-  g.a_offset[0] = 0;
-  g.a_ld = g.k;
-  g.a_transposed = false;
-  launch_gemm(context, g);
 }
 
 }  // namespace motiongan::detail
