@@ -1,6 +1,6 @@
 // Products with the same B many times, such as the weights of a recurrent network: B is packed once. Results
 // are bit-equal to those of gemm.cl.
-#include "gemm_tiles.cl"
+#include "gemm_panels.cl"
 
 // Packs B into panels of COLUMNS columns, out[panel][p][COLUMNS]. Columns past n are undefined. Work-groups:
 // x over panels, y over blocks of BLOCK values of p.
@@ -19,34 +19,6 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_pack(global cons
   for (uint i = 0; i < 2 * count; ++i) WRITE(to + i * VW, packed[i]);
 }
 
-#define RECTIFY 16
-
-#define FMA_PANEL(i)                       \
-  {                                        \
-    const realv value = a[i * row_stride]; \
-    x##i = fma(value, b0, x##i);           \
-    y##i = fma(value, b1, y##i);           \
-  }
-// tile[R][COLUMNS] += A * a panel.
-#define DEFINE_MULTIPLY_PANEL(R)                                                             \
-  static inline void multiply_panel_##R(global const real* a, size_t row_stride, uint count, \
-                                        global const real* b, realv* tile) {                 \
-    ROWS_##R(LOAD) for (uint p = 0; p < count; ++p, ++a, b += COLUMNS) {                     \
-      const realv b0 = READ(b), b1 = READ(b + VW);                                           \
-      ROWS_##R(FMA_PANEL)                                                                    \
-    }                                                                                        \
-    ROWS_##R(STORE)                                                                          \
-  }
-#if MOST_ROWS == 12
-DEFINE_MULTIPLY_PANEL(12)
-DEFINE_MULTIPLY_PANEL(8)
-#else
-DEFINE_MULTIPLY_PANEL(6)
-#endif
-DEFINE_MULTIPLY_PANEL(4)
-DEFINE_MULTIPLY_PANEL(2)
-DEFINE_MULTIPLY_PANEL(1)
-
 // One row times DIRECT panels: a single stream of B would be bound by memory latency.
 static inline void multiply_panels_1(global const real* a, uint count, global const real* b, size_t panel,
                                      realv* sums) {
@@ -62,14 +34,6 @@ static inline void multiply_panels_1(global const real* a, uint count, global co
   }
   sums[0] = s0, sums[1] = s1, sums[2] = s2, sums[3] = s3;
   sums[4] = s4, sums[5] = s5, sums[6] = s6, sums[7] = s7;
-}
-
-static inline void rectify(global const real* c, size_t stride, uint rows, uint width, global real* out) {
-  for (uint i = 0; i < rows; ++i, c += stride, out += stride)
-    for (uint j = 0; j < width; j += VW) {
-      const realv x = load_some(c + j, width - j);
-      store_some(x < (realv)(0) ? (realv)(0) : x, out + j, width - j);
-    }
 }
 
 // The product with a packed B, for batch 1 and A not transposed; the panels of segment s start at

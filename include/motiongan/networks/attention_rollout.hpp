@@ -51,26 +51,50 @@ class AttentionRollout {
     check(prior, classes, noise);
     reserve(prior.dim(0), prior.dim(1));
     detail::rows_with_constants(prior, classes, noise, {rows_, batch_ * encode_.k});
-    gemm(context_, encode_);
-    gemm(context_, first_[0]);
-    gemm(context_, second_[0]);
+    compute(encode_);
+    compute(first_[0]);
+    compute(second_[0]);
     if (inner_ > 0) attend();
-    gemm(context_, first_[1]);
-    gemm(context_, second_[1]);
+    compute(first_[1]);
+    compute(second_[1]);
     decode_.c = Tensor(context_, {frames_, batch_, options_.dof});
-    gemm(context_, decode_);
+    compute(decode_);
     return std::exchange(decode_.c, {});
   }
 
  private:
-  /// A convolution as a matrix product, without its input and output. `weight` is [taps, out, in].
-  GemmCall convolution(const Var& weight, const Var& bias) const {
+  /// A convolution as a matrix product and, for numbers of frames with which that is cheaper, in Winograd's
+  /// form: `run` then has a form and `points` the weights for it.
+  struct Layer : GemmCall {
+    detail::TapRun run = {};
+    Tensor points = {};
+  };
+
+  void compute(const Layer& layer) const {
+    if (!layer.run.form) return gemm(context_, layer);
+    const Tensor frames = layer.a.view(batch_ * layer.k, {frames_, batch_, layer.k});
+    detail::winograd_multiply(detail::winograd_frames(frames, layer.run), layer.points,
+                              {.form = *layer.run.form,
+                               .frames = frames_,
+                               .batch = batch_,
+                               .out = layer.n,
+                               .bias = layer.bias,
+                               .residual = layer.residual,
+                               .relu = layer.relu,
+                               .rectified = layer.rectified,
+                               .rectified_offset = layer.rectified_offset},
+                              {layer.c, layer.c_offset});
+  }
+
+  /// A layer without its input and output. `weight` is [taps, out, in].
+  Layer convolution(const Var& weight, const Var& bias) const {
     const auto kept = [&](const Var& v) {  // a copy that the caller's optimizer does not change
       Tensor copy(context_, v.shape());
       detail::copy_tensor(v.value(), copy);
       return copy;
     };
-    GemmCall call{.n = weight.dim(1), .k = weight.dim(2), .b = kept(weight)};
+    Layer call;
+    call.n = weight.dim(1), call.k = weight.dim(2), call.b = kept(weight);
     call.a_ld = call.b_ld = call.k, call.c_ld = call.n;
     call.b_transposed = true;
     call.segments = weight.dim(0);
@@ -102,20 +126,29 @@ class AttentionRollout {
     between_ = padded(hidden);
     state_ = Tensor(context_, {frames, batch, hidden});
     other_ = Tensor(context_, {frames, batch, hidden});
-    const auto place = [&](GemmCall& call, const Tensor& from, const Tensor& to, std::size_t to_first) {
+    const auto place = [&](Layer& call, const Tensor& from, const Tensor& to, std::size_t to_first) {
       call.m = rows, call.a = from, call.c = to, call.c_offset = to_first;
       for (std::size_t s = 0; s < call.segments; ++s) call.a_offset[s] = s * batch * call.k;
+      call.run = {}, call.points = {};
+      if (call.segments != 3) return;
+      const Offsets offsets{-1, 0, 1};
+      detail::TapPlan plan =
+          detail::plan_taps({from.view(0, {frames, batch, call.k}), call.b, offsets, frames, false},
+                            detail::ConvolutionPart::value);
+      if (plan.runs.empty()) return;
+      call.run = std::move(plan.runs.front());
+      call.points = detail::winograd_weights(call.b, false, call.run.taps, *call.run.form);
     };
-    const auto add = [&](GemmCall& call, const Tensor& residual) {
+    const auto add = [&](Layer& call, const Tensor& residual) {
       call.residual = residual, call.residual_ld = hidden;
     };
     place(encode_, rows_, state_, 0);
-    const auto rectify = [&](GemmCall& call) {
+    const auto rectify = [&](Layer& call) {
       call.rectified = rectified_, call.rectified_offset = batch * hidden;
     };
     rectify(encode_);
     if (inner_ == 0) rectify(second_[0]);  // with attention, its kernel does
-    for (GemmCall& call : first_) place(call, rectified_, between_, batch * hidden);
+    for (Layer& call : first_) place(call, rectified_, between_, batch * hidden);
     place(second_[0], between_, other_, 0);
     add(second_[0], state_);
     if (inner_ > 0) {
@@ -140,9 +173,9 @@ class AttentionRollout {
 
   AttentionGeneratorOptions options_;
   Context context_;
-  GemmCall encode_, decode_, parts_;
-  std::array<GemmCall, 2> first_, second_;  // of the two residual blocks
-  std::size_t inner_ = 0;                   // channels of query, key and value; 0: no attention
+  Layer encode_, decode_, parts_;
+  std::array<Layer, 2> first_, second_;  // of the two residual blocks
+  std::size_t inner_ = 0;                // channels of query, key and value; 0: no attention
   std::size_t frames_ = 0, batch_ = 0, pieces_ = 1;
   Tensor rows_, rectified_, between_;  // [frames + 2, batch, channels], first and last frame zero
   Tensor state_, other_;               // [frames * batch, hidden]
