@@ -1,9 +1,9 @@
 // The recurrent networks of DVGAN compared with PyTorch: the same names and workload as `torch_peer.py speed
 // --models rnn,rnn_critic` (500 words, 93 dof, 64 frames, k = 256; steps include Adam, the critic step
 // includes generating the fakes), and the frames per second when streaming characters frame by frame.
-//   bench_rnn [--json] [--peer torch_peer.py] [--seconds 4]
-// With --peer the script then times the same steps in PyTorch, in a separate process, and the ratio is
-// printed.
+//   bench_rnn [--json] [--peer torch_peer.py [--python PYTHON]...] [--seconds 4] [--rounds 5]
+// With --peer the script times the same steps in PyTorch, in a process of its own, in turn with ours: medians
+// over the rounds, and the ratio to the fastest PyTorch, are printed.
 #include <motiongan/networks/cnn_critic.hpp>
 #include <motiongan/networks/rnn_critic.hpp>
 #include <motiongan/networks/rnn_stream.hpp>

@@ -1,6 +1,6 @@
 // Generative search over 10,000 clips: 16 hypotheses of 32 frames, 69 dof, of which three (x, z and yaw) are
 // recomputed relative to the overlap at each of the 33 shifts.
-//   bench_search [--json] [--seconds 4] [--peer none|benchmarks/ranker_peer.py]
+//   bench_search [--json] [--seconds 4] [--peer none|benchmarks/ranker_peer.py [--python PYTHON]...]
 //                [--model MODEL --collection DIR [--command motiongan]]
 // Poses are generated in memory; no file is read. The reference is the same search as plain C++ loops over
 // windows, hypotheses and dimensions (-O3, single precision, two threads), on fewer windows. With --model and
@@ -134,6 +134,7 @@ double command_ms(const std::string& line) {
 struct Options {
   bool json = false, peer = true;
   std::string torch;  // a script that times PyTorch's rankers
+  std::vector<std::string> pythons;
   double seconds = 4;
   std::string model, collection, command = "motiongan";
 };
@@ -206,17 +207,15 @@ int run(const Options& options) {
     lines.push_back(std::move(line));
   const double ceiling = peak.measure();
   if (!options.torch.empty()) {
-    std::string version;
-    const auto theirs = bench::peer_times(options.torch, "ranker", version);
-    if (theirs.empty())
-      std::fprintf(stderr, "bench_search: %s printed no times (it needs python3 with torch)\n",
-                   options.torch.c_str());
-    for (bench::Measured& line : lines)
-      if (const auto found = theirs.find(line.name); found != theirs.end()) {
-        line.extra["torch_ms"] = found->second;
-        line.extra["torch"] = version;
-        line.extra["ratio_torch"] = found->second / line.ms;
-      }
+    for (const bench::Python& python : bench::find_pythons(options.pythons)) {
+      const auto theirs = bench::peer_times(python, options.torch, "ranker");
+      for (bench::Measured& line : lines)
+        if (const auto found = theirs.find(line.name); found != theirs.end()) {
+          line.extra["torch_ms"][python.torch] = found->second;
+          const double ratio = found->second / line.ms;
+          line.extra["ratio_torch"] = std::min(ratio, line.extra.value("ratio_torch", ratio));
+        }
+    }
   }
   for (const bench::Measured& line : lines) {
     const double gflops = line.gflop / line.ms * 1e3;
@@ -246,14 +245,15 @@ Options read_options(int argc, char** argv) {
       continue;
     }
     require(i + 1 < argc, "unknown argument ", name,
-            "; usage: bench_search [--json] [--seconds 4] [--peer none|ranker_peer.py] [--model MODEL "
-            "--collection DIR "
-            "[--command motiongan]]");
+            "; usage: bench_search [--json] [--seconds 4] [--peer none|ranker_peer.py [--python PYTHON]...] "
+            "[--model MODEL --collection DIR [--command motiongan]]");
     const std::string value = argv[++i];
     if (name == "--seconds")
       options.seconds = std::atof(value.c_str());
     else if (name == "--peer")
       options.peer = value != "none", options.torch = options.peer ? value : "";
+    else if (name == "--python")
+      options.pythons.push_back(value);
     else if (name == "--model")
       options.model = value;
     else if (name == "--collection")
