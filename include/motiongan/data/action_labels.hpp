@@ -103,21 +103,35 @@ class NamePattern {
   NameParts parse(std::string_view name) const {
     NameParts found;
     // rest[part][at]: whether the parts from `part` on match all of the name from `at` on; filled from the
-    // back.
+    // back, with a time that does not grow with the characters that a part may match.
     std::vector<std::vector<char>> rest(parts_.size() + 1, std::vector<char>(name.size() + 1, 0));
     rest[parts_.size()][name.size()] = 1;
     for (std::size_t p = parts_.size(); p-- > 0;)
-      for (std::size_t at = 0; at <= name.size(); ++at) {
-        const auto [low, high] = reach(parts_[p], name, at);
-        for (std::size_t n = low; n <= high && high != nowhere; ++n) rest[p][at] |= rest[p + 1][at + n];
+      for (std::size_t at = name.size() + 1; at-- > 0;) {
+        const std::vector<char>& next = rest[p + 1];
+        const bool inside = at < name.size(), longer = inside && rest[p][at + 1] != 0;
+        switch (parts_[p].kind) {
+          case Kind::any:
+            rest[p][at] = next[at] != 0 || longer;
+            break;
+          case Kind::literal:
+            rest[p][at] =
+                name.substr(at).starts_with(parts_[p].text) && next[at + parts_[p].text.size()] != 0;
+            break;
+          case Kind::label:
+          case Kind::subject:
+            rest[p][at] = inside && name[at] != '_' && (next[at + 1] != 0 || longer);
+            break;
+        }
       }
     require(rest[0][0] != 0, "the name '", name, "' does not match the pattern '", text_,
             "' ({label} and {subject}: one or more characters but '_'; *: any characters)");
     for (std::size_t p = 0, at = 0; p < parts_.size(); ++p) {
-      auto [n, high] = reach(parts_[p], name, at);
-      while (rest[p + 1][at + n] == 0) ++n;
-      if (parts_[p].kind == Kind::label) found.label = name.substr(at, n);
-      if (parts_[p].kind == Kind::subject) found.subject = name.substr(at, n);
+      const Kind kind = parts_[p].kind;
+      std::size_t n = kind == Kind::literal ? parts_[p].text.size() : kind == Kind::any ? 0 : 1;
+      while (rest[p + 1][at + n] == 0) ++n;  // as short as possible
+      if (kind == Kind::label) found.label = name.substr(at, n);
+      if (kind == Kind::subject) found.subject = name.substr(at, n);
       at += n;
     }
     return found;
@@ -129,21 +143,9 @@ class NamePattern {
     Kind kind;
     std::string text;
   };
-  static constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
 
   bool has(Kind kind) const {
     return std::any_of(parts_.begin(), parts_.end(), [&](const Part& p) { return p.kind == kind; });
-  }
-
-  /// How many characters from `at` on the part can match, first .. second; second is `nowhere` for no match.
-  static std::pair<std::size_t, std::size_t> reach(const Part& part, std::string_view name, std::size_t at) {
-    if (part.kind == Kind::any) return {0, name.size() - at};
-    if (part.kind == Kind::literal) {
-      const bool fits = name.substr(at).starts_with(part.text);
-      return {part.text.size(), fits ? part.text.size() : nowhere};
-    }
-    const std::size_t run = std::min(name.find('_', at), name.size()) - at;
-    return {1, run > 0 ? run : nowhere};
   }
 
   std::string text_;
