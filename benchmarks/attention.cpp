@@ -36,6 +36,7 @@ Measured critic_step(const Context& context, const AttentionGenerator& generator
   const Tensor real = concatenate({x, Var::constant(future)}, 0).value();
   std::uint32_t step = 0;
   return measure(context, "attention_critic_step_b64", seconds, [&] {
+    const KeepPacked weights_packed;  // as in a trainer
     Tensor fake;
     {
       const NoGrad values_only;

@@ -42,6 +42,7 @@ inline std::vector<Measured> cnn_steps(const Context& context, double seconds, c
     return fake().value();
   };
   const auto critic_step = [&] {
+    const KeepPacked weights_packed;  // as in a trainer
     const Tensor made = sample();
     const Var h_txt = critic.encode_text(text), pairs = concatenate({h_txt, h_txt}, 0);
     const CriticLoss loss = critic_loss(
@@ -51,6 +52,7 @@ inline std::vector<Measured> cnn_steps(const Context& context, double seconds, c
     critic_adam.step(grad(loss.loss, critic_adam.parameters()));
   };
   const auto generator_step = [&] {
+    const KeepPacked weights_packed;
     Var h_txt;
     {
       const NoGrad values_only;

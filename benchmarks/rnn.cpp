@@ -74,6 +74,7 @@ std::vector<Measured> ours(const Context& context, double seconds) {
     return generator(text, generator.noise(context, {.seed = 1, .step = ++step}, batch, frames));
   };
   const auto generator_step = [&] {
+    const KeepPacked weights_packed;  // as in a trainer
     Var h_txt;
     {
       const NoGrad values_only;
@@ -82,6 +83,7 @@ std::vector<Measured> ours(const Context& context, double seconds) {
     generator_adam.step(grad(generator_loss(cnn(fake(), h_txt)), generator_adam.parameters()));
   };
   const auto critic_step = [&] {
+    const KeepPacked weights_packed;
     Tensor made;
     {
       const NoGrad values_only;

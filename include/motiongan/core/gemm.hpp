@@ -5,6 +5,7 @@
 
 #include "motiongan/core/gemm_clblast.hpp"
 #include "motiongan/core/gemm_native.hpp"
+#include "motiongan/core/keep_packed.hpp"
 
 namespace motiongan {
 
@@ -55,16 +56,28 @@ inline Tensor pack_b(const Context& context, const GemmCall& call,
           "pack_b: expected 1 to 4 segments, batch 1 and a B with at least one row and column");
   const std::size_t columns = 2 * context.vector_width(), panels = detail::gemm_panels(context, call);
   const std::size_t block = detail::gemm_block(context), size = panels * call.k * columns;
-  Tensor packed(context, {call.segments * panels, call.k, columns});
-  for (std::size_t s = 0; s < call.segments; ++s) {
-    detail::check_matrix(call, "B", call.b, call.b_offset[s], call.b_transposed ? call.n : call.k,
-                         call.b_transposed ? call.k : call.n, call.b_ld, 0);
-    context.launch("gemm_packed", "gemm_pack", LaunchGrid::groups(panels, (call.k + block - 1) / block),
-                   detail::At{call.b, call.b_offset[s]}, call.b_transposed ? std::size_t{1} : call.b_ld,
-                   call.b_transposed ? call.b_ld : std::size_t{1}, call.n, call.k,
-                   detail::At{packed, s * size});
-  }
-  return packed;
+  const detail::PackKey key{1,
+                            call.n,
+                            call.k,
+                            call.b_ld,
+                            call.b_transposed,
+                            call.segments,
+                            call.b_offset[0],
+                            call.b_offset[1],
+                            call.b_offset[2],
+                            call.b_offset[3]};
+  return detail::packed_once(call.b, key, [&] {
+    Tensor packed(context, {call.segments * panels, call.k, columns});
+    for (std::size_t s = 0; s < call.segments; ++s) {
+      detail::check_matrix(call, "B", call.b, call.b_offset[s], call.b_transposed ? call.n : call.k,
+                           call.b_transposed ? call.k : call.n, call.b_ld, 0);
+      context.launch("gemm_packed", "gemm_pack", LaunchGrid::groups(panels, (call.k + block - 1) / block),
+                     detail::At{call.b, call.b_offset[s]}, call.b_transposed ? std::size_t{1} : call.b_ld,
+                     call.b_transposed ? call.b_ld : std::size_t{1}, call.n, call.k,
+                     detail::At{packed, s * size});
+    }
+    return packed;
+  });
 }
 
 /// Enqueues the product. With k = 0 the sum keeps its initial value. On the native backend an element's value

@@ -77,6 +77,8 @@ class Tensor {
   cl_mem buffer() const { return storage_->buffer(); }
   /// Whether both are parts of one memory; in a context that only counts, buffer() does not tell.
   bool shares_memory(const Tensor& other) const { return storage_ == other.storage_; }
+  /// Identifies the memory; null for an empty tensor.
+  const void* memory() const { return storage_.get(); }
   /// Index of the first element within the buffer.
   std::size_t offset() const { return offset_; }
 

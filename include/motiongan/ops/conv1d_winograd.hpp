@@ -103,15 +103,17 @@ inline Tensor winograd_weights(const Tensor& w, bool transposed, const Taps& tap
   const Context& context = w.context();
   const std::size_t out = w.dim(transposed ? 2 : 1), in = w.dim(transposed ? 1 : 2), ld = w.dim(2);
   const std::size_t columns = 2 * context.vector_width(), panels = (out + columns - 1) / columns;
-  const auto tap = [&](std::size_t i) {
-    return w.offset() + taps[std::min(i, taps.size() - 1)] * w.dim(1) * ld;
-  };
-  Tensor u(context, {form.points * panels, in, columns});
+  const auto index = [&](std::size_t i) { return taps[std::min(i, taps.size() - 1)]; };
+  const auto tap = [&](std::size_t i) { return w.offset() + index(i) * w.dim(1) * ld; };
   constexpr std::size_t block = 64;  // PACK_BLOCK in cl/winograd.cl
-  context.launch("winograd", "winograd_pack", LaunchGrid::groups(panels, (in + block - 1) / block),
-                 w.buffer(), tap(0), tap(1), tap(2), taps.size(), transposed ? ld : 1, transposed ? 1 : ld,
-                 out, in, form.weights, form.points, u);
-  return u;
+  const PackKey key{2, out, in, transposed, form.frames, taps.size(), index(0), index(1), index(2)};
+  return packed_once(w, key, [&] {
+    Tensor u(context, {form.points * panels, in, columns});
+    context.launch("winograd", "winograd_pack", LaunchGrid::groups(panels, (in + block - 1) / block),
+                   w.buffer(), tap(0), tap(1), tap(2), taps.size(), transposed ? ld : 1, transposed ? 1 : ld,
+                   out, in, form.weights, form.points, u);
+    return u;
+  });
 }
 
 /// The frames of x that the run reads, mixed: [points, tiles * rows of a frame, in]. x is [frames, rows, in].

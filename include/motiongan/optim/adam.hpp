@@ -47,6 +47,7 @@ class Adam : public Optimizer {
   void clip(double limit) {
     require(limit > 0, "Adam: the clipping limit is ", limit, ", expected a number above 0");
     gather();
+    detail::forget_packed(values());
     context().launch("elementwise", detail::clamp_kernel.name(), detail::vector_grid(values()), values(),
                      values(), values().size(), KernelReal{-limit}, KernelReal{limit});
   }

@@ -2,6 +2,7 @@
 #pragma once
 #include <utility>
 
+#include "motiongan/core/keep_packed.hpp"
 #include "motiongan/nn/module.hpp"
 #include "motiongan/ops/layout.hpp"
 
@@ -40,6 +41,7 @@ class Optimizer {
       at += gradients[i].size();
     }
     gather();
+    detail::forget_packed(values_);
     ++steps_;
     update();
   }

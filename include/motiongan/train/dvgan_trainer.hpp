@@ -95,6 +95,7 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
 
   /// One iteration: critic_steps critic steps and one generator step.
   void iterate() override {
+    const KeepPacked weights_packed;
     const std::size_t first = iteration_ * options_.steps();
     for (std::size_t i = 0; i < options_.critic_steps; ++i)
       critic_step(static_cast<std::uint32_t>(first + i));

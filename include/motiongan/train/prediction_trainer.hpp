@@ -81,6 +81,7 @@ class PredictionTrainer : public ModelTrainer<PredictionModel, PredictionTrainOp
 
   /// One update.
   void iterate() override {
+    const KeepPacked weights_packed;
     const auto step = static_cast<std::uint32_t>(iteration_);
     const PredictionBatch batch = windows_.draw(options_.seed, step, options_.batch);
     const Var loss = model_.one_step_ahead() ? one_step_loss(batch, step) : copy_loss(batch);
