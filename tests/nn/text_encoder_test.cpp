@@ -34,6 +34,45 @@ TEST_CASE("sentences: layout, and invalid words") {
   CHECK_THROWS_AS(Sentences(context, {{-1}}, vocabulary), Error);
 }
 
+TEST_CASE("sentences that samples share are encoded once") {
+  const Context context(ContextOptions{.precision = Precision::f64});
+  // 17 samples and quarters of 5: three distinct sentences take 5 rows, 16 distinct ones a row each.
+  Words shared{{3, 1}, {5, 6, 7}, {3, 1}, {3, 1}, {2}, {5, 6, 7}};
+  while (shared.size() < 17) shared.push_back({3, 1});
+  const Sentences text(context, shared, vocabulary);
+  CHECK(text.batch == 17);
+  CHECK(text.rows == 5);
+  CHECK(text.lengths.to_host() == std::vector<cl_int>{2, 3, 1, 2, 2});
+  const std::vector<cl_int> rows = text.of_sample.to_host();
+  CHECK(std::vector<cl_int>(rows.begin(), rows.begin() + 6) == std::vector<cl_int>{0, 1, 0, 0, 2, 1});
+  Words mostly(17, {1});
+  for (int i = 0; i < 16; ++i) mostly[static_cast<std::size_t>(i)] = {i % 12, i / 4};
+  CHECK(Sentences(context, mostly, vocabulary).rows == 17);
+  Initializer init(context, 4);
+  TextEncoder encoder(init, vocabulary, 16);
+  const Var encoded = encoder(text);
+  const std::vector<double> all = encoded.value().to_host<double>();
+  // Sample by sample, each with weights of its own in the loss.
+  const std::vector<Var> parameters = values_of(named_parameters(encoder));
+  const Var weights = Var::constant(random_normal(context, {.seed = 3}, 1, shared.size(), 16));
+  Var loss;
+  for (std::size_t b = 0; b < shared.size(); ++b) {
+    const Var alone = encoder(Sentences(context, {shared[b]}, vocabulary));
+    CHECK(alone.value().to_host<double>() ==
+          std::vector<double>(all.begin() + static_cast<std::ptrdiff_t>(16 * b),
+                              all.begin() + static_cast<std::ptrdiff_t>(16 * b + 16)));
+    const Var term = sum(alone * reshape(slice(weights, 1, b, 1), {1, 16}));
+    loss = loss.empty() ? term : loss + term;
+  }
+  const std::vector<Var> expected = grad(loss, parameters),
+                         found = grad(sum(encoded * reshape(weights, {shared.size(), 16})), parameters);
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const std::vector<double> x = found[i].value().to_host<double>(),
+                              y = expected[i].value().to_host<double>();
+    for (std::size_t e = 0; e < x.size(); ++e) CHECK(x[e] == doctest::Approx(y[e]).epsilon(1e-10));
+  }
+}
+
 TEST_CASE("a sentence is encoded the same alone and in a batch, bit for bit") {
   const Context context;
   for (std::size_t k : {8, 20, 64}) {

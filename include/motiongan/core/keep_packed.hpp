@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <map>
+#include <tuple>
 
 #include "motiongan/core/tensor.hpp"
 
@@ -46,12 +47,7 @@ class PackedTensors {
   }
 
  private:
-  struct Key {
-    const void* memory;
-    std::size_t offset;
-    PackKey layout;
-    auto operator<=>(const Key&) const = default;
-  };
+  using Key = std::tuple<const void*, std::size_t, PackKey>;  // memory, offset, layout
   struct Entry {
     Tensor source, packed;  // the source keeps its memory from being used for another tensor
     std::size_t used;

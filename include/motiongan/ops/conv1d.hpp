@@ -21,7 +21,7 @@ inline Tensor conv1d_value(const Tensor& x, const Tensor& w, const Offsets& offs
   Shape shape = x.shape();
   shape.front() = frames_out;
   shape.back() = c.out();
-  const Tensor y(x.context(), shape);
+  Tensor y(x.context(), shape);
   TapPlan plan = plan_taps(c, ConvolutionPart::value);
   // The last pass over a frame finishes it: no epilogue if that is not the same pass for all frames.
   const auto covers_all = [&](const TapRun& run) {
@@ -52,7 +52,7 @@ inline Tensor conv1d_value(const Tensor& x, const Tensor& w, const Offsets& offs
 
 /// W_s[i, j] = sum over frames t and rows of p[t, i] * q[t + offset_s, j]: [taps, P, Q].
 inline Tensor conv1d_weight_value(const Tensor& p, const Tensor& q, const Offsets& offsets) {
-  const Tensor w(p.context(), {offsets.size(), p.shape().back(), q.shape().back()});
+  Tensor w(p.context(), {offsets.size(), p.shape().back(), q.shape().back()});
   const TapPlan plan = plan_taps({q, w, offsets, p.dim(0), false}, ConvolutionPart::weight_gradient);
   for (const TapRun& run : plan.runs) conv1d_weight_winograd(p, q, run, w);
   conv1d_weight_direct(p, q, offsets, plan.others, w);
