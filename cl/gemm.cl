@@ -91,8 +91,7 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm(
         const uint width = min((uint)COLUMNS, first_column + columns - j);
         const realv* panel = packed + (j - first_column) / COLUMNS * panel_size;
         for (uint i = row_begin, rows; i < row_end; i += rows) {
-          const uint left = row_end - i;
-          rows = left >= MOST_ROWS ? MOST_ROWS : left >= 8 ? 8 : left >= 4 ? 4 : left >= 2 ? 2 : 1;
+          rows = tile_rows(row_end - i, MOST_ROWS);
           global real* at = c + i * c_row + j;
           if (first && !(flags & ACCUMULATE)) {
             for (uint e = 0; e < 2 * rows; ++e) tile[e] = 0;
@@ -109,15 +108,7 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm(
     else                                                            \
       multiply_half_##R(rows_of_a, a_row, a_p, count, piece, tile); \
   }
-#if MOST_ROWS == 12
-            MULTIPLY(12)
-            MULTIPLY(8)
-#else
-            MULTIPLY(6)
-#endif
-            MULTIPLY(4)
-            MULTIPLY(2)
-            MULTIPLY(1)
+            FOR_TILE_ROWS(MULTIPLY)
           }
           store_tile(at, c_row, rows, width, bias + j, residual + i * residual_row + j, residual_row,
                      last ? flags : 0, tile);

@@ -29,24 +29,7 @@
     }                                                                                              \
     ROWS_##R(STORE)                                                                                \
   }
-#if MOST_ROWS == 12
-DEFINE_MULTIPLY_PACKED(12)
-DEFINE_MULTIPLY_PACKED(8)
-#else
-DEFINE_MULTIPLY_PACKED(6)
-#endif
-DEFINE_MULTIPLY_PACKED(4)
-DEFINE_MULTIPLY_PACKED(2)
-DEFINE_MULTIPLY_PACKED(1)
-
-// Rows of the next tile if `left` rows are left.
-static inline uint tile_rows(uint left) {
-#if MOST_ROWS == 12
-  return left >= 12 ? 12 : left >= 8 ? 8 : left >= 4 ? 4 : left >= 2 ? 2 : 1;
-#else
-  return left >= 6 ? 6 : left >= 4 ? 4 : left >= 2 ? 2 : 1;
-#endif
-}
+FOR_TILE_ROWS(DEFINE_MULTIPLY_PACKED)
 
 // to[count][OUTER_ROWS] from A stored [p][i]. The last rows of A are not read past `rows`.
 static inline void pack_rows_of_a(global const real* a, size_t a_p, uint count, uint rows, uint readable,
@@ -97,7 +80,7 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_outer(
         pack_transposed(from, b_column, count, width, packed_b);
       }
       for (uint i = 0, size; i < rows; i += size) {
-        size = tile_rows(rows - i);
+        size = tile_rows(rows - i, MOST_ROWS);
         global real* at = c + (size_t)(row_begin + i) * c_row + j;
         if (first && !(flags & ACCUMULATE))
           for (uint e = 0; e < 2 * size; ++e) tile[e] = 0;
@@ -106,15 +89,7 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_outer(
         const real* block = (const real*)packed_a + i;
 #define MULTIPLY(R) \
   if (size == R) multiply_packed_##R(block, count, packed_b, tile);
-#if MOST_ROWS == 12
-        MULTIPLY(12)
-        MULTIPLY(8)
-#else
-        MULTIPLY(6)
-#endif
-        MULTIPLY(4)
-        MULTIPLY(2)
-        MULTIPLY(1)
+        FOR_TILE_ROWS(MULTIPLY)
         store_tile(at, c_row, size, width, bias + j, residual + (row_begin + i) * residual_row + j,
                    residual_row, last ? flags : 0, tile);
       }

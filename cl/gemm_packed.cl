@@ -76,8 +76,7 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_packed(
     }
     const uint width = min((uint)COLUMNS, column_end - j);
     for (uint i = row_begin, rows; i < row_end; i += rows) {
-      const uint left = row_end - i;
-      rows = left >= most ? most : left >= 8 ? 8 : left >= 4 ? 4 : left >= 2 ? 2 : 1;
+      rows = tile_rows(row_end - i, most);
       if (flags & ACCUMULATE)
         load_tile(c + i * c_row + j, c_row, rows, width, tile);
       else
@@ -87,15 +86,7 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_packed(
         global const real* piece = from + g.b_segment[s];
 #define MULTIPLY_PANEL(R) \
   if (rows == R) multiply_panel_##R(rows_of_a, a_row, k, piece, tile);
-#if MOST_ROWS == 12
-        MULTIPLY_PANEL(12)
-        MULTIPLY_PANEL(8)
-#else
-        MULTIPLY_PANEL(6)
-#endif
-        MULTIPLY_PANEL(4)
-        MULTIPLY_PANEL(2)
-        MULTIPLY_PANEL(1)
+        FOR_TILE_ROWS(MULTIPLY_PANEL)
       }
       store_tile(c + i * c_row + j, c_row, rows, width, bias + j, residual + i * residual_row + j,
                  residual_row, flags, tile);

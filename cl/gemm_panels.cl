@@ -19,15 +19,7 @@
     }                                                                                        \
     ROWS_##R(STORE)                                                                          \
   }
-#if MOST_ROWS == 12
-DEFINE_MULTIPLY_PANEL(12)
-DEFINE_MULTIPLY_PANEL(8)
-#else
-DEFINE_MULTIPLY_PANEL(6)
-#endif
-DEFINE_MULTIPLY_PANEL(4)
-DEFINE_MULTIPLY_PANEL(2)
-DEFINE_MULTIPLY_PANEL(1)
+FOR_TILE_ROWS(DEFINE_MULTIPLY_PANEL)
 
 #define RECTIFY 16
 

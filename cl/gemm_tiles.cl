@@ -85,15 +85,17 @@ typedef real4 anywhere4 __attribute__((aligned(REAL_BYTES)));
 // 12 rows take 24 of the 32 registers with 64-byte vectors, 6 rows take 12 of the 16 with shorter ones.
 #if VW * REAL_BYTES == 64
 #define MOST_ROWS 12
-DEFINE_MULTIPLY(12)
-DEFINE_MULTIPLY(8)
+#define FOR_TILE_ROWS(F) F(12) F(8) F(4) F(2) F(1)
 #else
 #define MOST_ROWS 6
-DEFINE_MULTIPLY(6)
+#define FOR_TILE_ROWS(F) F(6) F(4) F(2) F(1)
 #endif
-DEFINE_MULTIPLY(4)
-DEFINE_MULTIPLY(2)
-DEFINE_MULTIPLY(1)
+FOR_TILE_ROWS(DEFINE_MULTIPLY)
+
+// Rows of the next tile, at most `most`, if `left` rows are left.
+static inline uint tile_rows(uint left, uint most) {
+  return left >= most ? most : left >= 8 ? 8 : left >= 4 ? 4 : left >= 2 ? 2 : 1;
+}
 
 // packed[panels][count][COLUMNS] from B stored [p][j]. A row is read across all panels at once, because
 // reading short pieces of distant rows is slow.

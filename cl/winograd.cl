@@ -100,22 +100,13 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void winograd_multiply(
   const uint most = MOST_ROWS > 8 && k * REAL_BYTES % 4096 == 0 ? 8 : MOST_ROWS;
   for (uint a = 0; a < points; ++a) {
     for (uint r = 0, count; r < rows; r += count) {
-      const uint left = rows - r;
-      count = left >= most ? most : left >= 8 ? 8 : left >= 4 ? 4 : left >= 2 ? 2 : 1;
+      count = tile_rows(rows - r, most);
       realv* to = products + (a * ROWS_AT_ONCE + r) * 2;
       global const real* from = v + (size_t)r * k;
       for (uint e = 0; e < 2 * count; ++e) to[e] = 0;
 #define MULTIPLY(R) \
   if (count == R) multiply_panel_##R(from, k, k, u, to);
-#if MOST_ROWS == 12
-      MULTIPLY(12)
-      MULTIPLY(8)
-#else
-      MULTIPLY(6)
-#endif
-      MULTIPLY(4)
-      MULTIPLY(2)
-      MULTIPLY(1)
+      FOR_TILE_ROWS(MULTIPLY)
     }
     v += (size_t)g.rows * k;
     u += get_num_groups(0) * panel;

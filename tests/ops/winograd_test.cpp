@@ -33,6 +33,15 @@ double distance(const Tensor& a, const Tensor& b) {
   return std::sqrt(difference / size);
 }
 
+double allowed_distance(Precision precision) { return precision == Precision::f32 ? 3e-6 : 5e-15; }
+
+/// Whether convolutions are computed in Winograd's form here; says that a test is skipped if not.
+bool in_use(const Context& context) {
+  const bool native = choose_engine(context, GemmEngine::automatic) == GemmEngine::native;
+  if (!native) MESSAGE("skipped: only the native engine uses Winograd's form");
+  return native;
+}
+
 Taps all_taps(const Offsets& offsets) {
   Taps taps(offsets.size());
   std::iota(taps.begin(), taps.end(), std::size_t{0});
@@ -94,11 +103,8 @@ TEST_CASE("values equal the sum of shifted products") {
   constexpr std::size_t batch = 3, in = 65, out = 93;
   for (const Precision precision : {Precision::f32, Precision::f64}) {
     const Context& context = context_of(precision);
-    if (choose_engine(context, GemmEngine::automatic) != GemmEngine::native) {
-      MESSAGE("skipped: only the native engine uses Winograd's form");
-      return;
-    }
-    const double allowed = precision == Precision::f32 ? 3e-6 : 5e-15;
+    if (!in_use(context)) return;
+    const double allowed = allowed_distance(precision);
     for (const Case& c : cases())
       for (const bool transposed : {false, true})
         for (const bool finished : {false, true}) {
@@ -126,11 +132,8 @@ TEST_CASE("gradients of weights equal the sum of shifted products") {
   constexpr std::size_t batch = 3, p_channels = 96, q_channels = 101;
   for (const Precision precision : {Precision::f32, Precision::f64}) {
     const Context& context = context_of(precision);
-    if (choose_engine(context, GemmEngine::automatic) != GemmEngine::native) {
-      MESSAGE("skipped: only the native engine uses Winograd's form");
-      return;
-    }
-    const double allowed = precision == Precision::f32 ? 3e-6 : 5e-15;
+    if (!in_use(context)) return;
+    const double allowed = allowed_distance(precision);
     std::size_t in_this_form = 0;
     for (const Case& c : cases()) {
       CAPTURE(c.name);
