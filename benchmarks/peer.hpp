@@ -10,14 +10,9 @@
 #include <string>
 #include <vector>
 
-namespace motiongan::bench {
+#include "../src/shared/shell.hpp"
 
-/// The text as one word of a shell command.
-inline std::string shell_word(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
+namespace motiongan::bench {
 
 /// The lines that a command prints; none if it cannot be run.
 inline std::vector<std::string> output_lines(const std::string& command) {
@@ -56,8 +51,8 @@ inline std::vector<Python> find_pythons(const std::vector<std::string>& named) {
   const std::vector<std::string> usual{"python3", "/usr/bin/python3"};
   std::vector<Python> found;
   for (const std::string& program : named.empty() ? usual : named) {
-    const std::vector<std::string> lines =
-        output_lines(shell_word(program) + " -c 'import torch; print(torch.__version__)' 2>/dev/null");
+    const std::vector<std::string> lines = output_lines(
+        command::shell_word(program) + " -c 'import torch; print(torch.__version__)' 2>/dev/null");
     if (lines.size() == 1)
       found.push_back({program, lines[0]});
     else
@@ -75,8 +70,9 @@ inline std::vector<Python> find_pythons(const std::vector<std::string>& named) {
 inline std::map<std::string, double> peer_times(const Python& python, const std::string& script,
                                                 const std::string& models) {
   std::map<std::string, double> times;
-  for (const std::string& line : output_lines(shell_word(python.program) + " " + shell_word(script) +
-                                              " speed --models " + shell_word(models))) {
+  for (const std::string& line :
+       output_lines(command::shell_word(python.program) + " " + command::shell_word(script) +
+                    " speed --models " + command::shell_word(models))) {
     const auto json = nlohmann::json::parse(line, nullptr, false);
     if (json.is_object() && json.contains("name") && json.contains("ms"))
       times[json.at("name").get<std::string>()] = json.at("ms").get<double>();

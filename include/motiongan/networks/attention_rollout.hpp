@@ -9,8 +9,8 @@ namespace motiongan {
 /// depend on the rest of the batch, bit for bit with gemm()'s native engine.
 ///
 /// The weights are copied at construction: construct a new rollout after a training step. Buffers are
-/// allocated by the first step and kept as long as frames and batch size stay the same; a step then allocates
-/// only its result.
+/// allocated by the first step and kept as long as frames and batch size stay the same; a step then takes
+/// only its result and the mixed frames of one layer, from the context's pool.
 class AttentionRollout {
  public:
   explicit AttentionRollout(const AttentionGenerator& generator)
