@@ -14,6 +14,8 @@
     global const real* next = a + R * row_stride;                                            \
     ROWS_##R(LOAD) for (uint p = 0; p < count; ++p, ++a, b += COLUMNS, next += R) {          \
       PREFETCH(next);                                                                        \
+      PREFETCH(b + ROWS_AHEAD * COLUMNS);                                                    \
+      PREFETCH(b + ROWS_AHEAD * COLUMNS + VW);                                               \
       const realv b0 = READ(b), b1 = READ(b + VW);                                           \
       ROWS_##R(FMA_PANEL)                                                                    \
     }                                                                                        \
