@@ -11,6 +11,30 @@ kernel void copy_runs(global const real* x, uint x0, uint x_stride, global real*
   store_some(load_some(x + x0 + o * x_stride + r, left), out + out0 + o * out_stride + r, left);
 }
 
+// Up to MOST_PARTS tensors that copy_parts copies: part p is `run[p]` elements from x[p] of its buffer, for
+// each o, and goes to at[p]. Its vectors are those from item[p] on.
+#define MOST_PARTS 8
+typedef struct {
+  uint x[MOST_PARTS], at[MOST_PARTS], run[MOST_PARTS], item[MOST_PARTS];
+  uint count, items;
+} Parts;
+
+/// out[o*out_stride + at[p] + r] = x_p[o*run[p] + r] for all parts p, r < run[p] and o < outer. Work-items:
+/// outer times the vectors of all parts.
+kernel void copy_parts(global const real* x0, global const real* x1, global const real* x2,
+                       global const real* x3, global const real* x4, global const real* x5,
+                       global const real* x6, global const real* x7, global real* out, uint out0,
+                       const Parts parts, uint out_stride, uint outer) {
+  const uint o = get_global_id(0) / parts.items, item = get_global_id(0) % parts.items;
+  if (o >= outer) return;
+  global const real* const x[MOST_PARTS] = {x0, x1, x2, x3, x4, x5, x6, x7};
+  uint p = 0;
+  while (p + 1 < parts.count && item >= parts.item[p + 1]) ++p;
+  const uint r = (item - parts.item[p]) * VW, left = parts.run[p] - r;
+  store_some(load_some(x[p] + parts.x[p] + o * parts.run[p] + r, left),
+             out + out0 + o * out_stride + parts.at[p] + r, left);
+}
+
 /// out[o, r] = x[o, r - before] if 0 <= r - before < run, else 0; r < out_run.
 kernel void pad_runs(global const real* x, uint x0, global real* out, uint out0, uint outer, uint run,
                      uint out_run, uint before) {

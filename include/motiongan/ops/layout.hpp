@@ -16,6 +16,44 @@ inline void copy_runs(const Tensor& x, std::size_t x_first, std::size_t x_stride
                  out.view(out_first, {out.size() - out_first}), out_stride, outer, run);
 }
 
+/// Mirrors struct Parts in cl/layout.cl, field by field.
+struct CopyNumbers {
+  static constexpr std::size_t most = 8;
+  std::array<cl_uint, most> x{}, at{}, run{}, item{};
+  cl_uint count = 0, items = 0;
+  std::string describe() const { return concat("{", count, " parts, ", items, " vectors}"); }
+};
+inline void add_argument(KernelArguments& to, const CopyNumbers& numbers) { to.set(numbers); }
+
+/// A tensor to be copied to element `at` of another one.
+struct CopyPart {
+  Tensor from;
+  std::size_t at;
+};
+
+/// Copies parts, each [outer, any size], to rows of `out` that are `stride` apart. A launch copies eight.
+inline void copy_parts(std::span<const CopyPart> parts, const Tensor& out, std::size_t outer,
+                       std::size_t stride) {
+  const Context& context = out.context();
+  const auto narrow = [](std::size_t value) { return static_cast<cl_uint>(value); };
+  for (std::size_t first = 0; first < parts.size() && outer > 0; first += CopyNumbers::most) {
+    CopyNumbers numbers;
+    std::array<cl_mem, CopyNumbers::most> buffers{};
+    buffers.fill(parts[first].from.buffer());
+    for (const CopyPart& part : parts.subspan(first, std::min(CopyNumbers::most, parts.size() - first))) {
+      const std::size_t run = part.from.size() / outer, i = numbers.count;
+      if (run == 0) continue;
+      numbers.x[i] = narrow(part.from.offset()), numbers.at[i] = narrow(part.at);
+      numbers.run[i] = narrow(run), numbers.item[i] = numbers.items;
+      numbers.items += narrow(vectors(context, run));
+      buffers[numbers.count++] = part.from.buffer();
+    }
+    context.launch("layout", "copy_parts", LaunchGrid::items(outer * numbers.items), buffers[0], buffers[1],
+                   buffers[2], buffers[3], buffers[4], buffers[5], buffers[6], buffers[7], out, numbers,
+                   stride, outer);
+  }
+}
+
 /// Copies x to `to`, which has the same size.
 inline void copy_tensor(const Tensor& x, const Tensor& to) { copy_runs(x, 0, 0, to, 0, 0, 1, x.size()); }
 
@@ -84,14 +122,14 @@ inline Var concatenate(const std::vector<Var>& parts, std::size_t axis) {
     require(rest == shape, "concatenate: ", part.shape(), " does not fit the others along axis ", axis);
   }
   Tensor value(parts[0].context(), shape);
+  const detail::AxisView whole("concatenate", shape, axis);
+  std::vector<detail::CopyPart> copies;
   std::size_t first = 0;
   for (const Var& part : parts) {
-    const detail::AxisView view("concatenate", part.shape(), axis);
-    const std::size_t run = view.count * view.inner;
-    detail::copy_runs(part.value(), 0, run, value, first * view.inner, shape[axis] * view.inner, view.outer,
-                      run);
-    first += view.count;
+    copies.push_back({part.value(), first * whole.inner});
+    first += part.dim(axis);
   }
+  detail::copy_parts(copies, value, whole.outer, whole.count * whole.inner);
   return record("concat", parts, std::move(value),
                 [axis](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
                   std::vector<Var> gradients;

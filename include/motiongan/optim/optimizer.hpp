@@ -33,13 +33,15 @@ class Optimizer {
   void step(const std::vector<Var>& gradients) {
     require(gradients.size() == parameters_.size(), title_, ": ", gradients.size(), " gradients for ",
             parameters_.size(), " parameters");
+    std::vector<detail::CopyPart> copies;
     std::size_t at = 0;
     for (std::size_t i = 0; i < gradients.size(); ++i) {
       require(gradients[i].shape() == parameters_[i].shape(), title_, ": gradient ", i, " has shape ",
               gradients[i].shape(), ", the parameter ", parameters_[i].shape());
-      detail::copy_tensor(gradients[i].value(), gradients_.view(at, gradients[i].shape()));
+      copies.push_back({gradients[i].value(), at});
       at += gradients[i].size();
     }
+    detail::copy_parts(copies, gradients_, 1, 0);
     gather();
     detail::forget_packed(values_);
     ++steps_;
