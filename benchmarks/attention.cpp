@@ -52,20 +52,25 @@ Measured critic_step(const Context& context, const AttentionGenerator& generator
 }
 
 Measured rollout(const Context& context, const AttentionGenerator& generator, std::size_t batch,
-                 double seconds) {
+                 double seconds, const std::string& suffix = "") {
   const Tensor prior = random_normal(context, {.seed = 5}, frames, batch, dof);
   const Tensor y = classes_of(context, batch);
   AttentionRollout rollout(generator);
-  return measure(context, "attention_rollout_30s_b" + std::to_string(batch), seconds, [&] {
+  return measure(context, "attention_rollout_30s_b" + std::to_string(batch) + suffix, seconds, [&] {
     Tensor motion = prior;
     for (std::size_t i = 0; i < seconds_made; ++i) motion = rollout.step(motion, y);
   });
 }
 
 std::vector<Measured> ours(const Context& context, double seconds) {
-  const AttentionGenerator generator(Initializer(context, 1), {.dof = dof, .classes = classes});
-  return {critic_step(context, generator, seconds), rollout(context, generator, 64, seconds),
-          rollout(context, generator, 1, seconds)};
+  AttentionGenerator generator(Initializer(context, 1), {.dof = dof, .classes = classes});
+  std::vector<Measured> all{critic_step(context, generator, seconds),
+                            rollout(context, generator, 64, seconds),
+                            rollout(context, generator, 1, seconds)};
+  generator.bfloat16();
+  for (const std::size_t batch : {1u, 8u, 64u})
+    all.push_back(rollout(context, generator, batch, seconds, "_bf16"));
+  return all;
 }
 
 }  // namespace

@@ -30,11 +30,12 @@ std::vector<std::vector<int>> random_sentences(std::size_t count) {
 }
 
 /// Sampling as in use: new sentences every time, with the same weights.
-Measured sample(const Context& context, const RnnGenerator& generator, std::size_t batch, double seconds) {
+Measured sample(const Context& context, const RnnGenerator& generator, std::size_t batch, double seconds,
+                const std::string& suffix = "") {
   RnnStream stream(generator);
   const auto sentences = random_sentences(batch);
   std::uint32_t first = 0;
-  return measure(context, "dvgan_rnn_sample_n64_b" + std::to_string(batch), seconds, [&] {
+  return measure(context, "dvgan_rnn_sample_n64_b" + std::to_string(batch) + suffix, seconds, [&] {
     std::vector<StreamStart> starts;
     for (const auto& sentence : sentences) starts.push_back({sentence, 1, first++});
     stream.add(starts);
@@ -44,14 +45,15 @@ Measured sample(const Context& context, const RnnGenerator& generator, std::size
 }
 
 /// Frames per second of `count` characters that all advance one frame at a time.
-Measured streaming(const Context& context, const RnnGenerator& generator, std::size_t count, double seconds) {
+Measured streaming(const Context& context, const RnnGenerator& generator, std::size_t count, double seconds,
+                   const std::string& suffix = "") {
   RnnStream stream(generator);
   std::vector<StreamStart> starts;
   for (const auto& sentence : random_sentences(count))
     starts.push_back({sentence, 1, static_cast<std::uint32_t>(starts.size())});
   stream.add(starts);
   constexpr std::size_t steps = 16;  // per measurement, because plots are computed up to 16 frames ahead
-  Measured m = measure(context, "dvgan_rnn_stream_" + std::to_string(count), seconds, [&] {
+  Measured m = measure(context, "dvgan_rnn_stream_" + std::to_string(count) + suffix, seconds, [&] {
     for (std::size_t i = 0; i < steps; ++i) stream.step(1);
   });
   m.extra["frames_per_second"] = static_cast<double>(steps * count) / m.ms * 1e3;
@@ -98,8 +100,12 @@ std::vector<Measured> ours(const Context& context, double seconds) {
   std::vector<Measured> all{sample(context, generator, 64, seconds), sample(context, generator, 1, seconds),
                             measure(context, "dvgan_rnn_generator_step_n64_b64", seconds, generator_step),
                             measure(context, "dvgan_rnn_critic_step_n64_b64", seconds, critic_step)};
-  for (const std::size_t count : {1u, 10u, 100u, 1000u})
-    all.push_back(streaming(context, generator, count, seconds));
+  constexpr std::size_t crowds[] = {1, 10, 100, 1000};
+  for (const std::size_t count : crowds) all.push_back(streaming(context, generator, count, seconds));
+  generator.bfloat16();
+  all.push_back(sample(context, generator, 1, seconds, "_bf16"));
+  for (const std::size_t count : crowds)
+    all.push_back(streaming(context, generator, count, seconds, "_bf16"));
   return all;
 }
 

@@ -1,6 +1,28 @@
 // Products with the panels of a packed B, shared by gemm_packed.cl and winograd.cl.
 #include "gemm_tiles.cl"
 
+// A row of a panel, COLUMNS weights: two vectors or, of bfloat16 weights, one of 32-bit lanes, in which the
+// first vector is the low half and the second one the high half.
+#ifdef WEIGHTS_ARE_BF16
+typedef uint weight;
+#define WEIGHT_ROW VW
+#define READ_WEIGHTS(p, first, second)    \
+  const bitsv pair_##first = vload(0, p); \
+  const realv first = from_bf16(pair_##first << 16), second = from_bf16(pair_##first & (uint)0xffff0000u);
+#define WRITE_WEIGHTS(p, first, second) vstore(to_bf16(first) >> 16 | to_bf16(second), 0, p)
+#define PREFETCH_WEIGHTS(p) PREFETCH((p) + ROWS_AHEAD * WEIGHT_ROW)
+#else
+typedef real weight;
+#define WEIGHT_ROW COLUMNS
+#define READ_WEIGHTS(p, first, second) const realv first = READ(p), second = READ((p) + VW);
+#define WRITE_WEIGHTS(p, first, second) \
+  WRITE(p, first);                      \
+  WRITE((p) + VW, second)
+#define PREFETCH_WEIGHTS(p)                \
+  PREFETCH((p) + ROWS_AHEAD * WEIGHT_ROW); \
+  PREFETCH((p) + ROWS_AHEAD * WEIGHT_ROW + VW)
+#endif
+
 #define FMA_PANEL(i)                       \
   {                                        \
     const realv value = a[i * row_stride]; \
@@ -10,13 +32,12 @@
 // tile[R][COLUMNS] += A * a panel.
 #define DEFINE_MULTIPLY_PANEL(R)                                                             \
   static inline void multiply_panel_##R(global const real* a, size_t row_stride, uint count, \
-                                        global const real* b, realv* tile) {                 \
+                                        global const weight* b, realv* tile) {               \
     global const real* next = a + R * row_stride;                                            \
-    ROWS_##R(LOAD) for (uint p = 0; p < count; ++p, ++a, b += COLUMNS, next += R) {          \
+    ROWS_##R(LOAD) for (uint p = 0; p < count; ++p, ++a, b += WEIGHT_ROW, next += R) {       \
       PREFETCH(next);                                                                        \
-      PREFETCH(b + ROWS_AHEAD * COLUMNS);                                                    \
-      PREFETCH(b + ROWS_AHEAD * COLUMNS + VW);                                               \
-      const realv b0 = READ(b), b1 = READ(b + VW);                                           \
+      PREFETCH_WEIGHTS(b);                                                                   \
+      READ_WEIGHTS(b, b0, b1)                                                                \
       ROWS_##R(FMA_PANEL)                                                                    \
     }                                                                                        \
     ROWS_##R(STORE)                                                                          \

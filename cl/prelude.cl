@@ -65,6 +65,15 @@ typedef realv realv_anywhere __attribute__((aligned(4)));
 #define STORE_VECTOR(v, p) vstore(v, 0, p)
 #endif
 
+// A bfloat16 is the upper half of a float; these functions hold it as the upper half of a uint.
+typedef JOIN(uint, VW) bitsv;
+/// The nearest bfloat16, ties to even.
+static inline bitsv to_bf16(realv v) {
+  const bitsv bits = JOIN(as_uint, VW)(JOIN(convert_float, VW)(v));
+  return (bits + 0x7fff + ((bits >> 16) & 1)) & (uint)0xffff0000u;
+}
+static inline realv from_bf16(bitsv bits) { return JOIN(JOIN(convert_, REAL), VW)(JOIN(as_float, VW)(bits)); }
+
 static inline realv sigmoid_v(realv v) { return 1 / (1 + exp(-v)); }
 
 /// Loads min(left, VW) elements.

@@ -7,6 +7,7 @@
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "shared/clip_reading.hpp"
+#include "shared/options.hpp"
 #include "shared/outputs.hpp"
 #include "shared/prompt.hpp"
 #include "shared/show.hpp"
@@ -20,6 +21,7 @@ struct CompleteArgs {
   std::size_t seed_frames = 25, frames = 39, count = 1, first_sample = 0;
   std::uint64_t seed = 1;
   double rate = 0;
+  WeightPrecision weights = WeightPrecision::f32;
   motion::ClipOptions clips;
 };
 
@@ -156,8 +158,9 @@ int complete(const CompleteArgs& args) {
   check_output("--png", args.png, picture_output, inputs);
   check_outputs("--out", files, inputs);
   const Context context;
-  const Dvgan model = Dvgan::load(context, file);
+  Dvgan model = Dvgan::load(context, file);
   model.rnn();  // throws Error if there is no RNN generator
+  if (args.weights == WeightPrecision::bf16) model.bfloat16();
   const motion::MotionFormat& format = model.format();
   const Prior prior = read_prior(args, format);
   warn_of_unknown_words(format.vocabulary, args.text);
@@ -250,6 +253,7 @@ const Verb complete_verb{
       option("--html", args->html, "also write an HTML page: the clip next to its continuations")
           ->type_name("FILE");
       option("--png", args->png, "also write a picture of their poses")->type_name("FILE");
+      add_weights_option(*verb, args->weights);
       verb->callback([&job, args] { job = [args] { return complete(*args); }; });
     }};
 

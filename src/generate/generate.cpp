@@ -5,6 +5,7 @@
 #include "motiongan/models/action_gan.hpp"
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/motion/motion.hpp"
+#include "shared/options.hpp"
 #include "shared/outputs.hpp"
 #include "shared/prompt.hpp"
 #include "shared/show.hpp"
@@ -17,6 +18,7 @@ struct GenerateArgs {
   std::string model, prompts, out = ".", html, png, drift;
   std::vector<std::string> texts;
   GenerateOptions options;
+  WeightPrecision weights = WeightPrecision::f32;
   double rate = 0;
 };
 
@@ -66,7 +68,8 @@ int generate(const GenerateArgs& args, const fs::path& file) {
   const std::vector<std::string> texts = all_texts(args);
   check_samples(args.options.first_sample, args.options.count);
   const Context context;
-  const Dvgan model = Dvgan::load(context, file);
+  Dvgan model = Dvgan::load(context, file);
+  if (args.weights == WeightPrecision::bf16) model.bfloat16();
   const motion::MotionFormat& format = model.format();
   const std::size_t made = args.options.frames > 0 ? args.options.frames : format.frames;
   if (made != format.frames) model.rnn();  // throws Error if there is no RNN generator
@@ -139,6 +142,7 @@ int generate_either(const GenerateArgs& args, ActionGenerateArgs actions, const 
   actions.count = args.options.count, actions.frames = args.options.frames;
   actions.first_sample = args.options.first_sample, actions.seed = args.options.seed,
   actions.rate = args.rate;
+  actions.weights = args.weights;
   return generate_actions(actions, verb, file);
 }
 
@@ -190,6 +194,7 @@ const Verb generate_verb{
       verb->add_option("--html", args->html, "also write an HTML page that plays the motions")
           ->type_name("FILE");
       verb->add_option("--png", args->png, "also write a picture of their poses")->type_name("FILE");
+      add_weights_option(*verb, args->weights);
       add_action_options(*verb, *actions);
       verb->callback([&job, args, actions, verb] {
         job = [args, actions, verb] { return generate_either(*args, *actions, *verb); };

@@ -143,7 +143,8 @@ std::string given_action_options(const CLI::App& verb) {
 
 int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const fs::path& file) {
   const Context context;
-  const ActionGan model = ActionGan::load(context, file);
+  ActionGan model = ActionGan::load(context, file);
+  if (args.weights == WeightPrecision::bf16) model.bfloat16();
   const motion::PositionFormat& format = model.format();
   require(!args.schedule.empty(),
           "no class is given; use --class NAME or --class NAME:3s,OTHER:5s. The classes are: ",

@@ -1,5 +1,6 @@
 // motiongan generate for class-conditioned models.
 #pragma once
+#include "motiongan/core/bf16.hpp"
 #include "shared/action_data.hpp"
 
 namespace motiongan::command {
@@ -16,6 +17,7 @@ struct ActionGenerateArgs {
   std::size_t count = 1, frames = 0, first_sample = 0;
   std::uint64_t seed = 1;
   double rate = 0;
+  WeightPrecision weights = WeightPrecision::f32;
 };
 
 /// Adds the options that only class-conditioned models have.

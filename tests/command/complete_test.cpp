@@ -54,6 +54,10 @@ TEST_CASE("complete, from a model of two iterations") {
     REQUIRE(call(walk + "--seed-frames 6 --frames 9 --first-sample 1 --out b").status == 0);
     CHECK(bytes_of("b/walk_000_walk-on_001.bvh") == bytes_of("a/walk_000_walk-on_001.bvh"));
     CHECK(bytes_of("a/walk_000_walk-on_000.bvh") != bytes_of("a/walk_000_walk-on_001.bvh"));
+    REQUIRE(call(walk + "--seed-frames 6 --frames 9 --weights bf16 --out c").status == 0);
+    const Motion rounded = to_motion(read_bvh("c/walk_000_walk-on_000.bvh"));
+    for (std::size_t f = 0; f < 6; ++f) CHECK(same_frame(rounded, f, given, f));
+    CHECK(bytes_of("c/walk_000_walk-on_000.bvh") != bytes_of("a/walk_000_walk-on_000.bvh"));
   }
   SUBCASE("--from names a frame or seconds; --rate and any number of frames") {
     REQUIRE(call(walk + "--seed-frames 3 --from 45 --frames 200 --rate 60 --out a").status == 0);

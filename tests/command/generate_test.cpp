@@ -8,6 +8,7 @@
 #include "command.hpp"
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/models/dvgan.hpp"
+#include "motiongan/motion/motion.hpp"
 
 using namespace motiongan::motion;
 
@@ -151,6 +152,29 @@ TEST_CASE("an RNN model makes any number of frames") {
     write_bvh("c.bvh", resample(motions[0], 10));
     CHECK(bytes_of("c/walk_000.bvh") == bytes_of("c.bvh"));
     CHECK_FALSE(call("generate run --text walk").has("drift"));  // a window of 8 frames
+  }
+  SUBCASE("16-bit weights give nearly the same motion, that of the library") {
+    const Said said = call("generate run --text walk --frames 20 --weights bf16 --out a");
+    CHECK_MESSAGE(said.status == 0, said.text);
+    REQUIRE(call("generate run --text walk --frames 20 --weights f32 --out b").status == 0);
+    const motiongan::Context context;
+    auto model = motiongan::Dvgan::load(context, "run/generator.safetensors");
+    model.bfloat16();
+    write_bvh("c.bvh", model.generate("walk", {.frames = 20})[0]);
+    CHECK(bytes_of("a/walk_000.bvh") == bytes_of("c.bvh"));
+    const Motion rounded = to_motion(read_bvh("a/walk_000.bvh")),
+                 exact = to_motion(read_bvh("b/walk_000.bvh"));
+    double most = 0;
+    for (std::size_t f = 0; f < 20; ++f)
+      for (std::size_t j = 0; j < exact.skeleton.size(); ++j)
+        most = std::max(
+            most, length(expmap_from_quat(multiply(inverse(exact.rotation(f, j)), rounded.rotation(f, j)))));
+    CHECK(most > 1e-6);
+    CHECK(most < 0.1);
+    const Said wrong = call("generate run --text walk --weights f16");
+    CHECK(wrong.status != 0);
+    CHECK_MESSAGE(wrong.has("--weights"), wrong.text);
+    CHECK_MESSAGE(wrong.has("bf16"), wrong.text);
   }
   SUBCASE("memory does not grow with the length") {
     const long some = peak_memory("generate run --text walk --frames 1000");

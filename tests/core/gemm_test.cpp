@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <motiongan/core/bf16.hpp>
 
 using namespace motiongan;
 using namespace motiongan::test;
@@ -295,6 +296,8 @@ TEST_CASE("packing B changes no bit, whatever the size, and nothing around C") {
       plan.a_transposed = false, plan.batch = 1;
       Problem problem = make(context, plan, random);
       CAPTURE(concat(problem.call));
+      problem.call.b_in_16_bits = i % 2 == 1;
+      if (problem.call.b_in_16_bits) round_to_bf16(problem.call.b);
       const std::vector<double> start = problem.call.c.to_host<double>();
       gemm(context, problem.call, GemmEngine::native);
       const std::vector<double> plain = problem.call.c.to_host<double>();

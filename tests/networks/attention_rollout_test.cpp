@@ -102,6 +102,26 @@ TEST_CASE("a sample is the same alone and in a batch, bit for bit") {
   }
 }
 
+TEST_CASE("16-bit weights: the motion of the rounded generator, the same alone and in a batch") {
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    const Context& c = context(precision);
+    constexpr std::size_t frames = 30, dof = 31, batch = 7;
+    AttentionGenerator g = generator(c, {.dof = dof, .classes = classes, .hidden = 128});
+    const Tensor x = prior(c, frames, batch, dof), y = one_hot(c, batch);
+    const Tensor before = AttentionRollout(g).step(x, y);
+    g.bfloat16();
+    AttentionRollout rollout(g);
+    const NoGrad values_only;
+    const Tensor together = rollout.step(x, y);
+    CHECK(difference(together, g(Var::constant(x), Var::constant(y)).value()) <
+          (precision == Precision::f64 ? 1e-12 : 1e-5));
+    CHECK(difference(together, before) > 0);
+    CHECK(difference(together, before) < 0.05);
+    const auto only = [&](const Tensor& t) { return slice(Var::constant(t), 1, 3, 1).value(); };
+    CHECK(rollout.step(only(x), one_hot(c, 1, 3)).to_host() == only(together).to_host());
+  }
+}
+
 TEST_CASE("weights are read at construction; buffers are allocated once") {
   const Context& c = context(Precision::f32);
   AttentionGenerator g = generator(c, {.dof = 6, .classes = classes, .hidden = 16});

@@ -72,6 +72,40 @@ TEST_CASE("steps equal one call, bit for bit, while others are added and removed
   CHECK(r.motions[later[1]] == at_once(c, 30));
 }
 
+TEST_CASE("16-bit weights: steps equal one call of the rounded generator, near the first one") {
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    const Context c(ContextOptions{.precision = precision});
+    RnnGenerator generator(Initializer(c, 3),
+                           {.vocabulary = words, .dof = dof, .frames = 12, .hidden = hidden});
+    const auto motion_of = [&](bool in_one_call) {
+      const NoGrad values_only;
+      if (in_one_call)
+        return generator(Sentences(c, {b.sentence}, words),
+                         generator.noise(c, {.seed = b.seed, .first_sample = b.sample}, 1, 20))
+            .value()
+            .to_host();
+      RnnStream stream(generator);
+      const StreamId id = stream.add({a, b, ::c})[1];
+      REQUIRE(stream.row_of(id) == 1);
+      std::vector<float> motion;
+      for (int t = 0; t < 20; ++t) {
+        const std::span<const float> made = stream.step();
+        motion.insert(motion.end(), made.begin() + dof, made.begin() + 2 * dof);
+      }
+      return motion;
+    };
+    const std::vector<float> before = motion_of(true);
+    generator.bfloat16();
+    const std::vector<float> rounded = motion_of(false);
+    CHECK(rounded == motion_of(true));
+    double difference = 0, size = 0;
+    for (std::size_t i = 0; i < rounded.size(); ++i)
+      difference += std::pow(rounded[i] - before[i], 2), size += std::pow(before[i], 2);
+    CHECK(std::sqrt(difference / size) < 0.02);
+    CHECK(difference > 0);
+  }
+}
+
 TEST_CASE("a prior is continued as by the generator; several motions may share one") {
   for (std::size_t n : {1u, 5u}) {
     CAPTURE(n);

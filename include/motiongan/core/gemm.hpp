@@ -45,18 +45,18 @@ inline GemmEngine choose_engine(const Context& context, GemmEngine engine) {
 }  // namespace detail
 
 /// Packs the B of a repeated product into the order in which the native backend reads it, segment after
-/// segment, for GemmCall::b_panels: [segments * panels, k, 2 * vector width]. Empty on other backends.
-/// Ignores m, a and c of the call; must be repeated when B changes. Throws Error for a batch, an empty B or a
-/// B outside its tensor.
+/// segment, for GemmCall::b_panels: [segments * panels, k, 2 * vector width], or the same in 16 bits. Empty
+/// on other backends. Ignores m, a and c of the call; must be repeated when B changes. Throws Error for a
+/// batch, an empty B or a B outside its tensor.
 inline Tensor pack_b(const Context& context, const GemmCall& call,
                      GemmEngine engine = GemmEngine::automatic) {
   if (detail::choose_engine(context, engine) != GemmEngine::native) return {};
   require(call.segments >= 1 && call.segments <= 4 && call.batch == 1 && call.n > 0 && call.k > 0 &&
               !call.b.empty(),
           "pack_b: expected 1 to 4 segments, batch 1 and a B with at least one row and column");
-  const std::size_t columns = 2 * context.vector_width(), panels = detail::gemm_panels(context, call);
-  const std::size_t block = detail::gemm_block(context), size = panels * call.k * columns;
-  const detail::PackKey key{1,
+  const std::size_t panels = detail::gemm_panels(context, call), block = detail::gemm_block(context),
+                    size = panels * call.k * detail::packed_row(context, call.b_in_16_bits);
+  const detail::PackKey key{call.b_in_16_bits ? 3U : 1U,
                             call.n,
                             call.k,
                             call.b_ld,
@@ -67,11 +67,12 @@ inline Tensor pack_b(const Context& context, const GemmCall& call,
                             call.b_offset[2],
                             call.b_offset[3]};
   return detail::packed_once(call.b, key, [&] {
-    Tensor packed(context, {call.segments * panels, call.k, columns});
+    const Tensor packed = detail::packed_panels(context, call.segments * panels, call.k, call.b_in_16_bits);
     for (std::size_t s = 0; s < call.segments; ++s) {
       detail::check_matrix(call, "B", call.b, call.b_offset[s], call.b_transposed ? call.n : call.k,
                            call.b_transposed ? call.k : call.n, call.b_ld, 0);
-      context.launch("gemm_packed", "gemm_pack", LaunchGrid::groups(panels, (call.k + block - 1) / block),
+      context.launch(detail::packed_kernels(call.b_in_16_bits), "gemm_pack",
+                     LaunchGrid::groups(panels, (call.k + block - 1) / block),
                      detail::At{call.b, call.b_offset[s]}, call.b_transposed ? std::size_t{1} : call.b_ld,
                      call.b_transposed ? call.b_ld : std::size_t{1}, call.n, call.k,
                      detail::At{packed, s * size});

@@ -24,8 +24,12 @@ struct GemmCall {
   std::size_t c_offset = 0;
   std::size_t batch = 1, a_batch_stride = 0, b_batch_stride = 0, c_batch_stride = 0;
   bool accumulate = false;  ///< add to the present content of C
-  /// B packed by pack_b() for the same b, b_offset, b_ld, b_transposed, n, k and segments; or empty. Saves
-  /// packing B for every product and gives bit-identical results. Not for batches or a transposed A.
+  /// pack_b() stores B in 16 bits, rounded to bfloat16. If B holds such values, as after round_to_bf16(),
+  /// that loses nothing.
+  bool b_in_16_bits = false;
+  /// B packed by pack_b() for the same b, b_offset, b_ld, b_transposed, b_in_16_bits, n, k and segments; or
+  /// empty. Saves packing B for every product and gives bit-identical results. Not for batches or a
+  /// transposed A.
   Tensor b_panels = {};
   /// The epilogue, in this order: + bias[j], + residual[residual_offset + i * residual_ld + j], ReLU.
   Tensor bias = {}, residual = {};  ///< optional; shared by all problems of the batch

@@ -13,6 +13,18 @@ inline std::size_t gemm_panels(const Context& context, const GemmCall& g) {
   return (g.n + columns - 1) / columns;
 }
 
+/// Elements of a row of packed B in the kernels' units: columns or, in 16 bits, pairs of columns.
+inline std::size_t packed_row(const Context& context, bool in_16_bits) {
+  return (in_16_bits ? 1 : 2) * context.vector_width();
+}
+/// A tensor for `panels` packed panels of `rows` rows each.
+inline Tensor packed_panels(const Context& context, std::size_t panels, std::size_t rows, bool in_16_bits) {
+  const std::size_t row = packed_row(context, in_16_bits);
+  return Tensor(context, {panels, rows, in_16_bits ? row * sizeof(cl_uint) / context.real_size() : row});
+}
+/// The file of kernels for packed products.
+inline const char* packed_kernels(bool in_16_bits) { return in_16_bits ? "gemm_packed_bf16" : "gemm_packed"; }
+
 /// How the native kernel divides its work: rows and panels per work-group, and panels packed at once. None of
 /// these changes a bit of the result.
 struct GemmSplit {
@@ -116,10 +128,10 @@ inline void gemm_native(const Context& context, const GemmCall& g) {
   }
   to.b_first = first(g.b_panels);
   for (std::size_t s = 0; s < g.segments; ++s)
-    to.b_segment[s] = narrow(s * gemm_panels(context, g) * g.k * 2 * context.vector_width());
+    to.b_segment[s] = narrow(s * gemm_panels(context, g) * g.k * packed_row(context, g.b_in_16_bits));
   if (!g.rectified.empty()) to.flags |= gemm_rectify;
-  context.launch("gemm_packed", "gemm_packed", grid, buffer(g.a), g.b_panels.buffer(), g.c.buffer(),
-                 buffer(g.bias), buffer(g.residual), to, buffer(g.rectified),
+  context.launch(packed_kernels(g.b_in_16_bits), "gemm_packed", grid, buffer(g.a), g.b_panels.buffer(),
+                 g.c.buffer(), buffer(g.bias), buffer(g.residual), to, buffer(g.rectified),
                  first(g.rectified) + narrow(g.rectified_offset));
 }
 

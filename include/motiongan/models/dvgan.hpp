@@ -148,6 +148,11 @@ class Dvgan {
     return motions;
   }
 
+  /// Rounds all weights to bfloat16 (PyTorch's module.bfloat16(), but computing stays in the context's
+  /// precision). What then generates frame by frame or second by second reads them in 16 bits. There is no
+  /// way back, and training should not continue from here.
+  void bfloat16() { detail::round_weights(generator_); }
+
   /// Writes one safetensors file with the weights (PyTorch's names and shapes), the options and the format.
   void save(const std::filesystem::path& path) { save_model(*this, path); }
 

@@ -19,6 +19,21 @@
 
 namespace motiongan {
 
+namespace detail {
+/// bfloat16() of a model whose network is one of several; some networks keep 16-bit weights themselves.
+template <class... Networks>
+void round_weights(std::variant<Networks...>& network) {
+  std::visit(
+      [](auto& n) {
+        if constexpr (requires { n.bfloat16(); })
+          n.bfloat16();
+        else
+          round_to_bf16(named_parameters(n));
+      },
+      network);
+}
+}  // namespace detail
+
 /// Whether the file is a checkpoint of a training run.
 inline bool is_checkpoint(const io::SafeTensors& file) { return file.metadata.contains("iteration"); }
 

@@ -49,6 +49,14 @@ class AttentionGenerator {
   const std::optional<SelfAttention>& attention() const { return attention_; }
   const Conv1d& decode() const { return decode_; }
 
+  /// Rounds all weights to bfloat16: an AttentionRollout then reads them in 16 bits. For generation; there is
+  /// no way back.
+  void bfloat16() {
+    round_to_bf16(named_parameters(*this));
+    in_16_bits_ = true;
+  }
+  bool in_16_bits() const { return in_16_bits_; }
+
   void list_parameters(ParameterList& list) {
     list.add_module("encode", encode_);
     list.add_module("block.0", block0_);
@@ -75,6 +83,7 @@ class AttentionGenerator {
   Conv1d encode_, decode_;
   Residual block0_, block1_;
   std::optional<SelfAttention> attention_;
+  bool in_16_bits_ = false;
 };
 
 }  // namespace motiongan

@@ -8,7 +8,8 @@ namespace motiongan {
 /// Computes what AttentionGenerator computes, equal to rounding, for inference. A sample's motion does not
 /// depend on the rest of the batch, bit for bit with gemm()'s native engine.
 ///
-/// The weights are copied at construction: construct a new rollout after a training step. Buffers are
+/// The weights are copied at construction: construct a new rollout after a training step. They are kept in 16
+/// bits if AttentionGenerator::bfloat16() rounded them. Buffers are
 /// allocated by the first step and kept as long as frames and batch size stay the same; a step then takes
 /// only its result and the mixed frames of one layer, from the context's pool.
 class AttentionRollout {
@@ -16,6 +17,7 @@ class AttentionRollout {
   explicit AttentionRollout(const AttentionGenerator& generator)
       : options_(generator.options()), context_(generator.encode().weight.context()) {
     const NoGrad values_only;
+    in_16_bits_ = generator.in_16_bits();
     encode_ = convolution(generator.encode().weight, generator.encode().bias);
     for (std::size_t i : {0u, 1u}) {
       const Residual& block = generator.block(i);
@@ -97,6 +99,7 @@ class AttentionRollout {
     call.n = weight.dim(1), call.k = weight.dim(2), call.b = kept(weight);
     call.a_ld = call.b_ld = call.k, call.c_ld = call.n;
     call.b_transposed = true;
+    call.b_in_16_bits = in_16_bits_;
     call.segments = weight.dim(0);
     for (std::size_t s = 0; s < call.segments; ++s) call.b_offset[s] = s * call.n * call.k;
     call.bias = kept(bias);
@@ -130,7 +133,8 @@ class AttentionRollout {
       call.m = rows, call.a = from, call.c = to, call.c_offset = to_first;
       for (std::size_t s = 0; s < call.segments; ++s) call.a_offset[s] = s * batch * call.k;
       call.run = {}, call.points = {};
-      if (call.segments != 3) return;
+      // Weights mixed for Winograd's form are no bfloat16 values, and more of them.
+      if (call.segments != 3 || in_16_bits_) return;
       const Offsets offsets{-1, 0, 1};
       detail::TapPlan plan =
           detail::plan_taps({from.view(0, {frames, batch, call.k}), call.b, offsets, frames, false},
@@ -175,7 +179,8 @@ class AttentionRollout {
   Context context_;
   Layer encode_, decode_, parts_;
   std::array<Layer, 2> first_, second_;  // of the two residual blocks
-  std::size_t inner_ = 0;                // channels of query, key and value; 0: no attention
+  bool in_16_bits_ = false;
+  std::size_t inner_ = 0;  // channels of query, key and value; 0: no attention
   std::size_t frames_ = 0, batch_ = 0, pieces_ = 1;
   Tensor rows_, rectified_, between_;  // [frames + 2, batch, channels], first and last frame zero
   Tensor state_, other_;               // [frames * batch, hidden]

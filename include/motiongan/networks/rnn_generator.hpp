@@ -71,7 +71,7 @@ class RnnGenerator {
     const auto through = [k](const Var& bias, const Var& weight) {
       return reshape(matmul(reshape(bias, {1, k}), weight, false, true), {4 * k});
     };
-    return {
+    Folded folded{
         {.layer0 = concatenate({matmul(by_frame, frame_.weight), first.weight_hh}, 1),
          .layer1 = concatenate({second.weight_ih, second.weight_hh}, 1),
          .bias1 = second.bias_ih + second.bias_hh,
@@ -79,6 +79,9 @@ class RnnGenerator {
          .diff_bias = diff_.bias},
         reshape(matmul(by_plot, out), {1, 4 * k, k}),
         first.bias_ih + first.bias_hh + through(frame_.bias, by_frame) + through(plot_.out.bias, by_plot)};
+    if (in_16_bits_)  // products of rounded weights are not rounded
+      for (const Var& weights : {folded.rollout.layer0, folded.plot}) round_to_bf16(weights.value());
+    return folded;
   }
 
   /// The first pose, [1, B, M], from the text encoding [B, k] and the first frame's noise [1, B, k].
@@ -108,6 +111,14 @@ class RnnGenerator {
     return cut.empty() ? motion : shift_frames(motion, cut, options_.frames);
   }
 
+  /// Rounds all weights to bfloat16, also the products of fold(): an RnnStream then reads them in 16 bits.
+  /// For generation; there is no way back.
+  void bfloat16() {
+    round_to_bf16(named_parameters(*this));
+    in_16_bits_ = true;
+  }
+  bool in_16_bits() const { return in_16_bits_; }
+
   void list_parameters(ParameterList& list) {
     list.add_module("text", text_);
     list.add_module("initial_plot", initial_plot_);
@@ -124,6 +135,7 @@ class RnnGenerator {
   PlotLayer initial_plot_, plot_;
   Linear decode_, frame_, diff_;
   Lstm lstm_;
+  bool in_16_bits_ = false;
 };
 
 }  // namespace motiongan

@@ -21,14 +21,15 @@ using StreamId = std::size_t;
 /// the generator makes in one call for the same noise.
 ///
 /// step() allocates nothing once the stream has made that number of frames for that number of motions. The
-/// weights are read at construction: make a new stream after a training step.
+/// weights are read at construction: make a new stream after a training step. They are kept in 16 bits if
+/// RnnGenerator::bfloat16() rounded them.
 class RnnStream {
  public:
   explicit RnnStream(const RnnGenerator& generator)
       : generator_(generator), context_(generator.decode().weight.context()) {
     const NoGrad values_only;
     folded_ = generator.fold();
-    layers_ = detail::RolloutLayers(context_, folded_.rollout);
+    layers_ = detail::RolloutLayers(context_, folded_.rollout, generator.in_16_bits());
     k_ = generator.options().hidden;
     dof_ = generator.options().dof;
   }
@@ -228,10 +229,11 @@ class RnnStream {
   /// Sets up the matrix products of a step, except for the offsets that change from step to step.
   void prepare() {
     const RolloutWeights& w = folded_.rollout;
-    const auto product = [](const Tensor& a, std::size_t a_ld, const Tensor& b, std::size_t n, std::size_t k,
-                            const Tensor& c, std::size_t c_ld) {
+    const auto product = [&](const Tensor& a, std::size_t a_ld, const Tensor& b, std::size_t n, std::size_t k,
+                             const Tensor& c, std::size_t c_ld) {
       GemmCall call{.n = n, .k = k, .a = a, .b = b, .c = c, .a_ld = a_ld, .b_ld = k, .c_ld = c_ld};
       call.b_transposed = true;
+      call.b_in_16_bits = generator_.in_16_bits();
       return call;
     };
     noise_ = product(z_, k_, generator_.plot().noise.weight.value(), k_, k_, hidden_, k_);

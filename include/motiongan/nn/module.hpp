@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "motiongan/autograd/grad.hpp"
+#include "motiongan/core/bf16.hpp"
 #include "motiongan/core/random.hpp"
 
 namespace motiongan {
@@ -138,6 +139,11 @@ inline std::vector<Var> values_of(const std::vector<NamedParameter>& parameters)
   std::vector<Var> values;
   for (const NamedParameter& p : parameters) values.push_back(*p.value);
   return values;
+}
+
+/// Rounds the values of all parameters to the nearest bfloat16.
+inline void round_to_bf16(const std::vector<NamedParameter>& parameters) {
+  for (const NamedParameter& p : parameters) round_to_bf16(p.value->value());
 }
 
 /// While an object of this class exists, grad() with respect to one of the parameters throws. For a network

@@ -6,6 +6,20 @@
 
 namespace motiongan::detail {
 
+/// An optional kernel argument: a null buffer if empty.
+template <class T>
+struct Maybe {
+  const T& value;
+  std::string describe() const { return value.empty() ? "none" : value.describe(); }
+};
+inline void add_argument(KernelArguments& to, const Maybe<Tensor>& tensor) {
+  to.set(tensor.value.empty() ? static_cast<cl_mem>(nullptr) : tensor.value.buffer());
+  add_argument(to, tensor.value.offset());
+}
+inline void add_argument(KernelArguments& to, const Maybe<Indices>& indices) {
+  to.set(indices.value.empty() ? static_cast<cl_mem>(nullptr) : indices.value.buffer());
+}
+
 /// The operands of one step, each a tensor and the index of its first element.
 struct LstmStep {
   std::size_t batch;
@@ -16,21 +30,28 @@ struct LstmStep {
   At c_before, h, c;  ///< [batch, k], h in rows of `width`
   At gates;           ///< activated gates, [batch, 4k]
   bool keep_gates;    ///< whether gates are needed afterwards; if not, still used as scratch memory
+  /// If not empty, a sample keeps its state from step lengths[b] on, see lstm_layer(); `rows` are then h of
+  /// the step before, and this is step number `number`.
+  Indices lengths = {};
+  std::size_t number = 0;
 };
 
 /// One LSTM layer: gates = rows W^T + extra (order i, f, g, o), then c and h. The constructor packs W
-/// [4k, in]; later changes of W have no effect on the native backend.
+/// [4k, in], on request in 16 bits (see GemmCall); later changes of W have no effect on the native backend.
 class LstmStepper {
  public:
   LstmStepper() = default;
-  LstmStepper(const Context& context, const Tensor& weight)
-      : weight_(weight), k_(weight.dim(0) / 4), in_(weight.dim(1)) {
+  LstmStepper(const Context& context, const Tensor& weight, bool in_16_bits = false)
+      : weight_(weight), k_(weight.dim(0) / 4), in_(weight.dim(1)), kernels_(packed_kernels(in_16_bits)) {
     if (choose_engine(context, GemmEngine::automatic) != GemmEngine::native) return;
-    const std::size_t panels = 2 * vectors(context, k_), columns = 2 * context.vector_width();
-    packed_ = Tensor(context, {panels, in_, columns});
-    context.launch("gemm_packed", "gemm_pack_gates",
-                   LaunchGrid::groups(panels, (in_ + gemm_block(context) - 1) / gemm_block(context)), weight,
-                   in_, k_, packed_);
+    const std::size_t panels = 2 * vectors(context, k_);
+    packed_ = packed_once(weight, {in_16_bits ? 5U : 4U, in_, k_}, [&] {
+      const Tensor packed = packed_panels(context, panels, in_, in_16_bits);
+      context.launch(kernels_, "gemm_pack_gates",
+                     LaunchGrid::groups(panels, (in_ + gemm_block(context) - 1) / gemm_block(context)),
+                     weight, in_, k_, packed);
+      return packed;
+    });
   }
 
   void step(const LstmStep& s) const {
@@ -42,9 +63,10 @@ class LstmStepper {
       const std::size_t row_groups = std::max<std::size_t>(1, wanted / units), tile = 6;
       const std::size_t rows = ((s.batch + row_groups - 1) / row_groups + tile - 1) / tile * tile;
       context.count_gemm_flops(2.0 * static_cast<double>(s.batch * 4 * k_ * in_));
-      context.launch("gemm_packed", "gemm_lstm_cell", LaunchGrid::groups(units, (s.batch + rows - 1) / rows),
+      context.launch(kernels_, "gemm_lstm_cell", LaunchGrid::groups(units, (s.batch + rows - 1) / rows),
                      s.rows, s.width, in_, packed_, s.extra, extra_row, s.c_before, s.h, s.width, s.c,
-                     s.gates, static_cast<cl_uint>(s.keep_gates), s.batch, k_, rows);
+                     s.gates, static_cast<cl_uint>(s.keep_gates), Maybe<Indices>{s.lengths}, s.number,
+                     s.batch, k_, rows);
       return;
     }
     GemmCall call{.m = s.batch, .n = 4 * k_, .k = in_, .a = s.rows.tensor, .b = weight_, .c = s.gates.tensor};
@@ -56,13 +78,13 @@ class LstmStepper {
       call.residual = s.extra.tensor, call.residual_offset = s.extra.first, call.residual_ld = 4 * k_;
     gemm(context, call);
     context.launch("lstm", "lstm_cell", LaunchGrid::items(s.batch * vectors(context, k_)), s.gates,
-                   s.c_before, s.h, static_cast<cl_mem>(nullptr), std::size_t{0}, s.h, s.width, s.c, s.batch,
-                   k_);
+                   s.c_before, s.rows, Maybe<Indices>{s.lengths}, s.number, s.h, s.width, s.c, s.batch, k_);
   }
 
  private:
   Tensor weight_, packed_;
   std::size_t k_ = 0, in_ = 0;
+  const char* kernels_ = "";
 };
 
 }  // namespace motiongan::detail

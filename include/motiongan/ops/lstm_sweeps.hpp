@@ -6,20 +6,6 @@
 
 namespace motiongan::detail {
 
-/// An optional kernel argument: a null buffer if empty.
-template <class T>
-struct Maybe {
-  const T& value;
-  std::string describe() const { return value.empty() ? "none" : value.describe(); }
-};
-inline void add_argument(KernelArguments& to, const Maybe<Tensor>& tensor) {
-  to.set(tensor.value.empty() ? static_cast<cl_mem>(nullptr) : tensor.value.buffer());
-  add_argument(to, tensor.value.offset());
-}
-inline void add_argument(KernelArguments& to, const Maybe<Indices>& indices) {
-  to.set(indices.value.empty() ? static_cast<cl_mem>(nullptr) : indices.value.buffer());
-}
-
 /// Inputs and results of the forward pass, kept for the derivatives.
 struct LstmPass {
   Tensor w_hh, h_first, c_first;  // [4k, k], [B, k], [B, k]
@@ -49,7 +35,7 @@ struct LstmPass {
 
 /// Packs the weights once for all steps, if there are enough steps to amortise it.
 inline void pack_weights(const LstmPass& pass, GemmCall& call) {
-  if (pass.frames() > 8) call.b_panels = pack_b(pass.context(), call);
+  if (pass.frames() > 2) call.b_panels = pack_b(pass.context(), call);
 }
 
 /// to[t] = h W_hh^T + from[t], the gates of step t; run_step() sets h [B, k] and t.
@@ -121,28 +107,20 @@ inline LstmPass lstm_forward(const Tensor& x_gates, const Tensor& w_hh, const Te
                 .lengths = lengths,
                 .gates = Tensor(context, {frames, batch, 4 * k}),
                 .states = Tensor(context, {2, frames, batch, k})};
-  if (lengths.empty()) {
-    const LstmStepper layer(context, w_hh);
-    for (std::size_t t = 0; t < frames; ++t)
-      layer.step({.batch = batch,
-                  .rows = {t > 0 ? pass.states : h_first, t > 0 ? (t - 1) * pass.slab() : 0},
-                  .width = k,
-                  .extra = {x_gates, t * 4 * pass.slab()},
-                  .extra_is_bias = false,
-                  .c_before = {t > 0 ? pass.states : c_first, t > 0 ? (frames + t - 1) * pass.slab() : 0},
-                  .h = {pass.states, t * pass.slab()},
-                  .c = {pass.states, (frames + t) * pass.slab()},
-                  .gates = {pass.gates, t * 4 * pass.slab()},
-                  .keep_gates = true});
-    return pass;
-  }
-  GemmCall product = recurrence(pass, x_gates, pass.gates);
-  for (std::size_t t = 0; t < frames; ++t) {
-    const Tensor h_before = pass.h_before(t);
-    run_step(pass, product, h_before, t);
-    context.launch("lstm", "lstm_cell", pass.grid(), pass.gates_at(pass.gates, t), pass.c_before(t), h_before,
-                   lengths, t, pass.state_at(pass.states, t), k, pass.c_at(t), batch, k);
-  }
+  const LstmStepper layer(context, w_hh);
+  for (std::size_t t = 0; t < frames; ++t)
+    layer.step({.batch = batch,
+                .rows = {t > 0 ? pass.states : h_first, t > 0 ? (t - 1) * pass.slab() : 0},
+                .width = k,
+                .extra = {x_gates, t * 4 * pass.slab()},
+                .extra_is_bias = false,
+                .c_before = {t > 0 ? pass.states : c_first, t > 0 ? (frames + t - 1) * pass.slab() : 0},
+                .h = {pass.states, t * pass.slab()},
+                .c = {pass.states, (frames + t) * pass.slab()},
+                .gates = {pass.gates, t * 4 * pass.slab()},
+                .keep_gates = true,
+                .lengths = lengths,
+                .number = t});
   return pass;
 }
 

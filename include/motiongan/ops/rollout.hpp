@@ -50,8 +50,8 @@ struct RolloutTrace {
 struct RolloutLayers {
   LstmStepper first, second;
   RolloutLayers() = default;
-  RolloutLayers(const Context& context, const RolloutWeights& w)
-      : first(context, w.layer0.value()), second(context, w.layer1.value()) {}
+  RolloutLayers(const Context& context, const RolloutWeights& w, bool in_16_bits = false)
+      : first(context, w.layer0.value(), in_16_bits), second(context, w.layer1.value(), in_16_bits) {}
 };
 
 /// Runs all steps. `keep` keeps the gates of all steps, as rollout_backward needs them.
