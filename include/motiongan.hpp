@@ -35,6 +35,7 @@
 #include "motiongan/optim/sgd.hpp"
 //
 #include "motiongan/motion/body.hpp"
+#include "motiongan/motion/clean.hpp"
 #include "motiongan/motion/kinematics.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/motion/position_rotations.hpp"

@@ -12,6 +12,7 @@
 #include "motiongan/core/error.hpp"
 #include "motiongan/data/pose.hpp"
 #include "motiongan/motion/kinematics.hpp"
+#include "motiongan/motion/percentile.hpp"
 #include "motiongan/motion/root_joint.hpp"
 
 namespace motiongan::motion {
@@ -39,16 +40,6 @@ struct MotionStatistics {
   std::vector<JointStatistics> joints;
   std::vector<double> poses;  ///< [frames, 3 * joints] exponential maps in degrees, clip after clip
 };
-
-/// Percentile `share` (0 .. 1) of the values, with linear interpolation; 0 if there are none.
-inline double percentile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  std::sort(values.begin(), values.end());
-  const double at = share * static_cast<double>(values.size() - 1);
-  const std::size_t below = static_cast<std::size_t>(at);
-  const std::size_t above = std::min(below + 1, values.size() - 1);
-  return values[below] + (values[above] - values[below]) * (at - static_cast<double>(below));
-}
 
 /// Spectral moments of `values` [frames, width] over all channels: (sum of power * frequency, sum of power),
 /// in Hz for a rate in frames per second. The values are split into pieces of at most 512 frames, which keeps

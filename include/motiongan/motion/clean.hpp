@@ -1,0 +1,264 @@
+// Cleaning up a motion that was generated or measured: trembling is filtered, floating bodies are put down,
+// and feet that touch the floor are held where they stand.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "motiongan/core/error.hpp"
+#include "motiongan/motion/legs.hpp"
+#include "motiongan/motion/percentile.hpp"
+#include "motiongan/motion/root_joint.hpp"
+#include "motiongan/motion/smooth.hpp"
+
+namespace motiongan::motion {
+
+/// What clean() does. Lengths are in metres, speeds in metres per second.
+struct CleanOptions {
+  bool smooth = true;                         ///< filter rotations and root with low_pass()
+  double cutoff = 2;                          ///< of the filter, Hz
+  bool feet = true;                           ///< put the body on the floor and hold standing feet still
+  double unit_metres = 0;                     ///< the file's unit in metres; 0: unknown, a leg counts as 1 m
+  std::vector<std::string> foot_joints = {};  ///< names of the feet; empty: find_feet()
+  std::optional<double> floor = {};           ///< floor height in the file's unit; unset: from the feet
+  double touch_height = 0.06,
+         leave_height = 0.1;                  ///< a foot comes to stand below the one, until above the other
+  double touch_speed = 1.3, leave_speed = 2;  ///< and slower than the one, until faster than the other
+  double shortest = 0.1;                      ///< seconds that a foot stands at least
+  double blend = 0.12;                        ///< seconds in which a held foot is let go, and taken hold of
+  double play = 0.04;                         ///< a standing foot may be that far above or below the floor
+  std::size_t given =
+      0;  ///< first frames that stay as they are; the change sets in over twice `blend` after them
+  double airborne = 0.7;  ///< seconds after which a body above the floor is not jumping but floating
+};
+
+/// Throws Error for options out of range.
+inline void check(const CleanOptions& o) {
+  require(o.cutoff > 0 && o.unit_metres >= 0 && o.touch_height > 0 && o.leave_height >= o.touch_height &&
+              o.touch_speed > 0 && o.leave_speed >= o.touch_speed && o.shortest >= 0 && o.blend >= 0 &&
+              o.airborne > 0,
+          "cleaning: cutoff ", o.cutoff, ", unit ", o.unit_metres, ", heights ", o.touch_height, " and ",
+          o.leave_height, ", speeds ", o.touch_speed, " and ", o.leave_speed, ", times ", o.shortest, ", ",
+          o.blend, " and ", o.airborne, "; expected values above 0, each second one no less than the first");
+}
+
+/// Frames first .. last - 1 in which a foot stands.
+struct FootContact {
+  std::size_t first = 0, last = 0;
+};
+
+/// When a foot stands: it is low and slow, with hysteresis, for at least the shortest time. `places` are its
+/// positions in the world, one per frame, in a unit of 1 / `metre` metres.
+inline std::vector<FootContact> foot_contacts(const std::vector<Vec3>& places, double rate, double floor,
+                                              double metre, const CleanOptions& options = {}) {
+  std::vector<FootContact> out;
+  const std::size_t frames = places.size();
+  const auto at = [&](std::size_t i) -> const Vec3& { return places[std::min(i, frames - 1)]; };
+  bool stands = false;
+  for (std::size_t f = 0; f < frames; ++f) {
+    // Over three frames, so that trembling does not count as speed.
+    const std::size_t before = f > 0 ? f - 1 : 0, after = std::min(f + 1, frames - 1);
+    const double time = static_cast<double>(std::max<std::size_t>(after - before, 1)) / rate;
+    const double speed =
+                     std::hypot(at(after)[0] - at(before)[0], at(after)[2] - at(before)[2]) / time / metre,
+                 height = (at(f)[1] - floor) / metre;
+    const bool now = height < (stands ? options.leave_height : options.touch_height) &&
+                     speed < (stands ? options.leave_speed : options.touch_speed);
+    if (now && !stands) out.push_back({f, f});
+    if (now) out.back().last = f + 1;
+    stands = now;
+  }
+  std::erase_if(out, [&](const FootContact& c) {
+    return static_cast<double>(c.last - c.first) < options.shortest * rate;
+  });
+  return out;
+}
+
+namespace clean_detail {
+
+/// Largest (sign 1) or smallest (sign -1) value within `reach` frames of each frame.
+inline std::vector<double> extremes(const std::vector<double>& values, std::size_t reach, double sign) {
+  std::vector<double> out(values.size());
+  for (std::size_t f = 0; f < values.size(); ++f) {
+    double most = sign * values[f];
+    for (std::size_t g = f - std::min(f, reach); g <= std::min(f + reach, values.size() - 1); ++g)
+      most = std::max(most, sign * values[g]);
+    out[f] = sign * most;
+  }
+  return out;
+}
+
+inline std::vector<double> smoothed(const std::vector<double>& values, double cutoff, double rate) {
+  const std::vector<double> kernel = gaussian_kernel(cutoff, rate);
+  std::vector<double> out(values.size());
+  for (std::size_t f = 0; f < values.size(); ++f)
+    out[f] = filtered(kernel, values.size(), f, [&](std::size_t i) { return values[i]; });
+  return out;
+}
+
+/// One clean-up: the motion, and what is found in it.
+class Cleaner {
+ public:
+  Cleaner(Motion motion, const CleanOptions& options)
+      : motion_(std::move(motion)),
+        options_(options),
+        legs_(find_legs(motion_.skeleton, options.foot_joints)),
+        root_(static_cast<std::size_t>(moving_root(motion_))) {
+    std::vector<std::size_t> feet;
+    for (const Leg& leg : legs_) feet.push_back(leg.foot);
+    metre_ = options.unit_metres > 0 ? 1 / options.unit_metres : leg_length(motion_.skeleton, feet);
+  }
+
+  Motion run() {
+    if (motion_.frames < 3) return std::move(motion_);
+    std::vector<std::vector<Vec3>> feet = places();
+    std::vector<double> heights;
+    for (const auto& foot : feet)
+      for (const Vec3& p : foot) heights.push_back(p[1]);
+    floor_ = options_.floor.value_or(percentile(std::move(heights), 0.05));
+    put_down(feet);
+    feet = places();
+    std::vector<std::vector<Vec3>> moves;  // of each foot, in each frame
+    for (const auto& foot : feet) moves.push_back(holding(foot));
+    lower_for(moves);
+    for (std::size_t l = 0; l < legs_.size(); ++l)
+      for (std::size_t f = 0; f < motion_.frames; ++f) {
+        const Leg& leg = legs_[l];
+        const Vec3 ankle = world_joint(motion_, f, leg.ankle).position,
+                   foot = world_joint(motion_, f, leg.foot).position, wish = add(feet[l][f], moves[l][f]);
+        const Vec3 move = subtract(wish, foot);
+        if (length(move) > 1e-6 * metre_) reach(motion_, f, leg, add(ankle, move));
+      }
+    return std::move(motion_);
+  }
+
+ private:
+  std::vector<std::vector<Vec3>> places() const {
+    std::vector<std::vector<Vec3>> out(legs_.size());
+    for (std::size_t l = 0; l < legs_.size(); ++l)
+      for (std::size_t f = 0; f < motion_.frames; ++f)
+        out[l].push_back(world_joint(motion_, f, legs_[l].foot).position);
+    return out;
+  }
+
+  /// Moves the body by `rise` in frame f.
+  void raise(std::size_t f, double rise) {
+    const int parent = motion_.skeleton.joints[root_].parent;
+    Vec3 up{0, rise, 0};
+    if (parent >= 0)
+      up = rotate(inverse(world_joint(motion_, f, static_cast<std::size_t>(parent)).rotation), up);
+    motion_.position(f, root_) = add(motion_.position(f, root_), up);
+  }
+
+  /// Takes away the height of the lower foot above the floor where it stays up for longer than a jump takes:
+  /// an opening (Serra 1982), which keeps shorter rises as they are. Feet below the floor are raised.
+  void put_down(const std::vector<std::vector<Vec3>>& feet) {
+    std::vector<double> lowest(motion_.frames);
+    for (std::size_t f = 0; f < motion_.frames; ++f) {
+      lowest[f] = feet[0][f][1];
+      for (const auto& foot : feet) lowest[f] = std::min(lowest[f], foot[f][1]);
+      lowest[f] -= floor_;
+    }
+    const auto reach = static_cast<std::size_t>(std::round(options_.airborne * motion_.rate / 2));
+    std::vector<double> rise = extremes(extremes(lowest, reach, -1), reach, 1);
+    for (double& r : rise)
+      r = std::max(r - options_.play * metre_, std::min(r + options_.play * metre_, 0.0));
+    rise = smoothed(rise, 1 / options_.airborne, motion_.rate);
+    for (std::size_t f = 0; f < motion_.frames; ++f) raise(f, -rise[f]);
+  }
+
+  /// How far a foot has to move in each frame to stand still where it stands; between two stands it is let go
+  /// and taken hold of smoothly, and it never goes below the floor.
+  std::vector<Vec3> holding(const std::vector<Vec3>& foot) const {
+    const std::vector<FootContact> contacts = foot_contacts(foot, motion_.rate, floor_, metre_, options_);
+    std::vector<Vec3> out(motion_.frames, Vec3{});
+    for (const FootContact& c : contacts) {
+      Vec3 middle{};
+      for (std::size_t f = c.first; f < c.last; ++f)
+        middle = add(middle, scale(foot[f], 1 / static_cast<double>(c.last - c.first)));
+      middle[1] = std::max(middle[1], floor_);
+      for (std::size_t f = c.first; f < c.last; ++f) out[f] = subtract(middle, foot[f]);
+    }
+    const double blend = options_.blend * motion_.rate;
+    for (std::size_t c = 0; c <= contacts.size() && !contacts.empty(); ++c) {
+      const std::size_t begin = c > 0 ? contacts[c - 1].last : 0,
+                        end = c < contacts.size() ? contacts[c].first : motion_.frames;
+      const double most = std::min(blend, static_cast<double>(end - begin + 1) / 2);
+      const auto share = [&](std::size_t distance) {  // of a move, that many frames from where it is whole
+        const double t = std::clamp(1 - static_cast<double>(distance) / (most + 0.5), 0.0, 1.0);
+        return t * t * (3 - 2 * t);
+      };
+      for (std::size_t f = begin; f < end; ++f) {
+        if (c > 0) out[f] = add(out[f], scale(out[begin - 1], share(f - begin + 1)));
+        if (c < contacts.size()) out[f] = add(out[f], scale(out[end], share(end - f)));
+      }
+    }
+    for (std::size_t f = 0; f < motion_.frames; ++f) out[f][1] = std::max(out[f][1], floor_ - foot[f][1]);
+    return out;
+  }
+
+  /// Lowers the body, smoothly, where a leg would not reach its foot.
+  void lower_for(const std::vector<std::vector<Vec3>>& moves) {
+    std::vector<double> drop(motion_.frames, 0);
+    for (std::size_t l = 0; l < legs_.size(); ++l)
+      for (std::size_t f = 0; f < motion_.frames; ++f) {
+        if (length(moves[l][f]) < 1e-6 * metre_) continue;
+        const Leg& leg = legs_[l];
+        const Vec3 hip = world_joint(motion_, f, leg.thigh).position,
+                   knee = world_joint(motion_, f, leg.knee).position,
+                   ankle = world_joint(motion_, f, leg.ankle).position, target = add(ankle, moves[l][f]);
+        const double most = most_stretch * (length(subtract(knee, hip)) + length(subtract(ankle, knee)));
+        const double across = std::hypot(hip[0] - target[0], hip[2] - target[2]), above = hip[1] - target[1];
+        if (std::hypot(across, above) <= most || across >= most || above <= 0) continue;
+        drop[f] = std::max(drop[f], above - std::sqrt(most * most - across * across));
+      }
+    const auto reach = static_cast<std::size_t>(std::round(options_.blend * motion_.rate));
+    const std::vector<double> smooth =
+        smoothed(extremes(drop, reach, 1), 1 / (2 * std::max(options_.blend, 1e-3)), motion_.rate);
+    for (std::size_t f = 0; f < motion_.frames; ++f) raise(f, -std::max(smooth[f], 0.0));
+  }
+
+  Motion motion_;
+  CleanOptions options_;
+  std::vector<Leg> legs_;
+  std::size_t root_ = 0;
+  double metre_ = 1, floor_ = 0;
+};
+
+}  // namespace clean_detail
+
+namespace clean_detail {
+
+/// `to`, with the first `given` frames of `from` and a smooth change over `blend` frames after them.
+inline Motion after_given(const Motion& from, Motion to, std::size_t given, double blend) {
+  for (std::size_t f = 0; f < to.frames; ++f) {
+    const double t = f < given ? 0 : std::min((static_cast<double>(f - given) + 1) / (blend + 1), 1.0);
+    if (t == 1) break;
+    const double share = t * t * (3 - 2 * t);
+    for (std::size_t j = 0; j < to.skeleton.size(); ++j) {
+      to.rotation(f, j) = slerp(from.rotation(f, j), to.rotation(f, j), share);
+      to.position(f, j) = add(scale(from.position(f, j), 1 - share), scale(to.position(f, j), share));
+    }
+  }
+  return to;
+}
+
+}  // namespace clean_detail
+
+/// The motion cleaned up: low_pass(), which leaves what follows alone; then the body is put down where it
+/// floats, and feet are held still while they stand, by bending the legs. Works on any skeleton with two
+/// legs. Throws Error for options out of range and, with `feet`, for a skeleton without legs.
+inline Motion clean(const Motion& motion, const CleanOptions& options = {}) {
+  check_motion(motion);
+  check(options);
+  Motion out = options.smooth ? low_pass(motion, options.cutoff) : motion;
+  if (options.feet) out = clean_detail::Cleaner(std::move(out), options).run();
+  return options.given == 0 ? out
+                            : clean_detail::after_given(motion, std::move(out), options.given,
+                                                        2 * options.blend * motion.rate);
+}
+
+}  // namespace motiongan::motion
