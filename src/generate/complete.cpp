@@ -6,12 +6,13 @@
 #include "motiongan/metrics/euler_error.hpp"
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/motion/motion.hpp"
+#include "shared/cleaning.hpp"
 #include "shared/clip_reading.hpp"
-#include "shared/options.hpp"
 #include "shared/outputs.hpp"
 #include "shared/prompt.hpp"
 #include "shared/show.hpp"
 #include "shared/signals.hpp"
+#include "shared/weights.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -21,7 +22,8 @@ struct CompleteArgs {
   std::size_t seed_frames = 25, frames = 39, count = 1, first_sample = 0;
   std::uint64_t seed = 1;
   double rate = 0;
-  WeightPrecision weights = WeightPrecision::f32;
+  Weights weights;
+  Cleaning cleaning;
   motion::ClipOptions clips;
 };
 
@@ -158,9 +160,8 @@ int complete(const CompleteArgs& args) {
   check_output("--png", args.png, picture_output, inputs);
   check_outputs("--out", files, inputs);
   const Context context;
-  Dvgan model = Dvgan::load(context, file);
+  const Dvgan model = load_with<Dvgan>(context, file, args.model, args.weights);
   model.rnn();  // throws Error if there is no RNN generator
-  if (args.weights == WeightPrecision::bf16) model.bfloat16();
   const motion::MotionFormat& format = model.format();
   const Prior prior = read_prior(args, format);
   warn_of_unknown_words(format.vocabulary, args.text);
@@ -178,9 +179,15 @@ int complete(const CompleteArgs& args) {
                               .seed = args.seed,
                               .sample = static_cast<std::uint32_t>(args.first_sample + i),
                               .prior = &prior.seed});
+  if (args.cleaning.on()) job.kept = prior.seed.frames + args.frames;
   catch_signals();
-  const auto made = write_streamed(model, job);
+  auto made = write_streamed(model, job);
   if (!made) return stopped(0);
+  for (std::size_t i = 0; args.cleaning.on() && i < made->size(); ++i) {
+    motion::Motion& motion = (*made)[i] = args.cleaning.apply((*made)[i], prior.seed.frames);
+    const motion::Motion sized = motion::scaled(motion, job.scale);
+    motion::write_bvh(files[i], args.rate > 0 ? motion::resample(sized, args.rate) : sized);
+  }
 
   const double seconds = static_cast<double>(args.frames) / format.rate;
   fmt::print("\"{}\": {}\n", args.text, named(job.files));
@@ -254,6 +261,7 @@ const Verb complete_verb{
           ->type_name("FILE");
       option("--png", args->png, "also write a picture of their poses")->type_name("FILE");
       add_weights_option(*verb, args->weights);
+      add_clean_options(*verb, args->cleaning);
       verb->callback([&job, args] { job = [args] { return complete(*args); }; });
     }};
 

@@ -5,7 +5,7 @@
 #include "motiongan/models/action_gan.hpp"
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/motion/motion.hpp"
-#include "shared/options.hpp"
+#include "shared/cleaning.hpp"
 #include "shared/outputs.hpp"
 #include "shared/prompt.hpp"
 #include "shared/show.hpp"
@@ -18,7 +18,8 @@ struct GenerateArgs {
   std::string model, prompts, out = ".", html, png, drift;
   std::vector<std::string> texts;
   GenerateOptions options;
-  WeightPrecision weights = WeightPrecision::f32;
+  Weights weights;
+  Cleaning cleaning;
   double rate = 0;
 };
 
@@ -61,6 +62,7 @@ std::optional<std::vector<motion::Motion>> write_long(const Dvgan& model, const 
                               .seed = args.options.seed,
                               .sample = static_cast<std::uint32_t>(args.options.first_sample + i)});
   if (!args.html.empty() || !args.png.empty()) job.kept = shown_frames(model.format().rate, args.rate);
+  if (args.cleaning.on()) job.kept = frames;
   return write_streamed(model, job, drift);
 }
 
@@ -68,8 +70,7 @@ int generate(const GenerateArgs& args, const fs::path& file) {
   const std::vector<std::string> texts = all_texts(args);
   check_samples(args.options.first_sample, args.options.count);
   const Context context;
-  Dvgan model = Dvgan::load(context, file);
-  if (args.weights == WeightPrecision::bf16) model.bfloat16();
+  const Dvgan model = load_with<Dvgan>(context, file, args.model, args.weights);
   const motion::MotionFormat& format = model.format();
   const std::size_t made = args.options.frames > 0 ? args.options.frames : format.frames;
   if (made != format.frames) model.rnn();  // throws Error if there is no RNN generator
@@ -93,9 +94,13 @@ int generate(const GenerateArgs& args, const fs::path& file) {
       name = fmt::format("{}-{}", slug(text), again);
     const std::vector<fs::path> files =
         sample_files(out, name, args.options.first_sample, args.options.count);
-    const auto motions = streamed ? write_long(model, text, args, made, files, measured)
-                                  : write_whole(model, text, args, files, measured);
+    auto motions = streamed ? write_long(model, text, args, made, files, measured)
+                            : write_whole(model, text, args, files, measured);
     if (!motions) return stopped(files_made);
+    for (std::size_t i = 0; args.cleaning.on() && i < files.size(); ++i) {
+      motion::Motion& motion = (*motions)[i] = args.cleaning.apply((*motions)[i]);
+      motion::write_bvh(files[i], args.rate > 0 ? motion::resample(motion, args.rate) : motion);
+    }
     files_made += files.size();
     fmt::print("\"{}\": {}\n", text, named(files));
     if (args.html.empty() && args.png.empty()) continue;
@@ -142,7 +147,7 @@ int generate_either(const GenerateArgs& args, ActionGenerateArgs actions, const 
   actions.count = args.options.count, actions.frames = args.options.frames;
   actions.first_sample = args.options.first_sample, actions.seed = args.options.seed,
   actions.rate = args.rate;
-  actions.weights = args.weights;
+  actions.weights = args.weights, actions.cleaning = args.cleaning;
   return generate_actions(actions, verb, file);
 }
 
@@ -195,6 +200,7 @@ const Verb generate_verb{
           ->type_name("FILE");
       verb->add_option("--png", args->png, "also write a picture of their poses")->type_name("FILE");
       add_weights_option(*verb, args->weights);
+      add_clean_options(*verb, args->cleaning);
       add_action_options(*verb, *actions);
       verb->callback([&job, args, actions, verb] {
         job = [args, actions, verb] { return generate_either(*args, *actions, *verb); };

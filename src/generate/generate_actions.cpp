@@ -143,14 +143,15 @@ std::string given_action_options(const CLI::App& verb) {
 
 int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const fs::path& file) {
   const Context context;
-  ActionGan model = ActionGan::load(context, file);
-  if (args.weights == WeightPrecision::bf16) model.bfloat16();
+  const ActionGan model = load_with<ActionGan>(context, file, args.model, args.weights);
   const motion::PositionFormat& format = model.format();
   require(!args.schedule.empty(),
           "no class is given; use --class NAME or --class NAME:3s,OTHER:5s. The classes are: ",
           quoted_list(format.classes));
   const ActionSchedule schedule =
       parse_action_schedule(args.schedule, format, asked_seconds(args, format.rate));
+  require(!args.cleaning.on() || args.format == "bvh", "--clean works on rotations, which --format ",
+          args.format, " does not hold; use --format bvh");
   check_samples(args.first_sample, args.count);
   const std::size_t first_label = schedule.front().label;
   if (!args.attention_map.empty())
@@ -181,6 +182,8 @@ int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const
     motion::in_two_threads(count, [&](std::size_t i) {
       if (shows || args.format == "bvh")
         motions[i] = motion_from_positions(clips[i], priors[first + i].reference);
+      if (args.cleaning.on())
+        motions[i] = args.cleaning.apply(motions[i], args.with_prior ? format.frames : 0);
       write_action_clip(files[first + i], clips[i], motions[i], args.rate);
     });
     for (std::size_t i = 0; shows && i < count; ++i) {

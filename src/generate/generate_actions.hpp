@@ -1,7 +1,8 @@
 // motiongan generate for class-conditioned models.
 #pragma once
-#include "motiongan/core/bf16.hpp"
 #include "shared/action_data.hpp"
+#include "shared/cleaning.hpp"
+#include "shared/weights.hpp"
 
 namespace motiongan::command {
 
@@ -17,7 +18,8 @@ struct ActionGenerateArgs {
   std::size_t count = 1, frames = 0, first_sample = 0;
   std::uint64_t seed = 1;
   double rate = 0;
-  WeightPrecision weights = WeightPrecision::f32;
+  Cleaning cleaning;
+  Weights weights;
 };
 
 /// Adds the options that only class-conditioned models have.

@@ -70,15 +70,6 @@ bool contains(const std::vector<std::string_view>& list, std::string_view name) 
 
 }  // namespace
 
-void add_weights_option(CLI::App& verb, WeightPrecision& weights) {
-  FieldList list;
-  list.add(weights,
-           {.key = "weights",
-            .help = "precision of the model's weights: f32, as trained, or bf16, rounded to 16 bits, "
-                    "which is faster for few motions of an RNN or attention model"});
-  add_options(verb, list, "Options");
-}
-
 CLI::Validator in_range(const Range& range, bool whole) {
   return {[range, whole](std::string& text) {
             const std::optional<double> value = finite_number(text);

@@ -1,7 +1,6 @@
 // Turns the fields of the library's option structs into command-line options, and into notes stored in
 // checkpoints.
 #pragma once
-#include "motiongan/core/bf16.hpp"
 #include "motiongan/core/fields.hpp"
 #include "shared/command.hpp"
 
@@ -17,9 +16,6 @@ struct OptionFilter {
 };
 void add_options(CLI::App& verb, const FieldList& fields, const std::string& group,
                  const OptionFilter& filter);
-
-/// Adds --weights, the precision of the weights of a model that generates.
-void add_weights_option(CLI::App& verb, WeightPrecision& weights);
 
 /// Rejects numbers outside the range and, if `whole`, those with a fraction.
 CLI::Validator in_range(const Range& range, bool whole = false);

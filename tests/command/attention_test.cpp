@@ -93,6 +93,9 @@ TEST_CASE("training on classes: every loss is told, and a resumed run ends bit-e
     CHECK(bytes_of("b/walk-run_002.bvh") == bytes_of("a/walk-run_002.bvh"));
     REQUIRE(call("generate whole --class walk:1s,run:7 --first-sample 2 --weights bf16 --out r").status == 0);
     CHECK(bytes_of("r/walk-run_002.bvh") != bytes_of("a/walk-run_002.bvh"));
+    REQUIRE(call("generate whole --class walk:1s,run:7 --first-sample 2 --clean feet --out k").status == 0);
+    CHECK(bytes_of("k/walk-run_002.bvh") != bytes_of("a/walk-run_002.bvh"));
+    CHECK(call("generate whole --class walk --format csv --clean feet").has("use --format bvh"));
     REQUIRE(call("generate whole --class walk --seconds 2 --no-prior --format csv --out c").status == 0);
     CHECK(motiongan::motion::read_position_file("c/walk_000.csv", {}, 10).frames == 20);
     CHECK(call("generate whole --class walk --count 70 --seconds 1 --format npy --out d").has("and 50 more"));

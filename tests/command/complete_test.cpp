@@ -58,6 +58,10 @@ TEST_CASE("complete, from a model of two iterations") {
     const Motion rounded = to_motion(read_bvh("c/walk_000_walk-on_000.bvh"));
     for (std::size_t f = 0; f < 6; ++f) CHECK(same_frame(rounded, f, given, f));
     CHECK(bytes_of("c/walk_000_walk-on_000.bvh") != bytes_of("a/walk_000_walk-on_000.bvh"));
+    REQUIRE(call(walk + "--seed-frames 6 --frames 9 --clean feet,smooth --out d").status == 0);
+    const Motion cleaned = to_motion(read_bvh("d/walk_000_walk-on_000.bvh"));
+    for (std::size_t f = 0; f < 6; ++f) CHECK(same_frame(cleaned, f, given, f));
+    CHECK(bytes_of("d/walk_000_walk-on_000.bvh") != bytes_of("a/walk_000_walk-on_000.bvh"));
   }
   SUBCASE("--from names a frame or seconds; --rate and any number of frames") {
     REQUIRE(call(walk + "--seed-frames 3 --from 45 --frames 200 --rate 60 --out a").status == 0);

@@ -7,6 +7,7 @@
 
 #include "command.hpp"
 #include "motiongan/formats/bvh.hpp"
+#include "motiongan/metrics/jerk.hpp"
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/motion/motion.hpp"
 
@@ -171,10 +172,40 @@ TEST_CASE("an RNN model makes any number of frames") {
             most, length(expmap_from_quat(multiply(inverse(exact.rotation(f, j)), rounded.rotation(f, j)))));
     CHECK(most > 1e-6);
     CHECK(most < 0.1);
+    REQUIRE(call("generate run --text walk --frames 20 --weights raw --out r").status == 0);
+    const auto last =
+        motiongan::Dvgan::load(context, "run/checkpoint.safetensors", motiongan::WeightSource::raw);
+    write_bvh("r.bvh", last.generate("walk", {.frames = 20})[0]);
+    CHECK(bytes_of("r/walk_000.bvh") == bytes_of("r.bvh"));
+    CHECK(bytes_of("r/walk_000.bvh") != bytes_of("b/walk_000.bvh"));
+    const Said no_raw = call("generate run/generator.safetensors --text walk --weights raw");
+    CHECK_MESSAGE(no_raw.has("run/generator.safetensors is no checkpoint"), no_raw.text);
+    CHECK(call("generate run --text walk --weights raw,mean").has("exclude each other"));
     const Said wrong = call("generate run --text walk --weights f16");
     CHECK(wrong.status != 0);
     CHECK_MESSAGE(wrong.has("--weights"), wrong.text);
     CHECK_MESSAGE(wrong.has("bf16"), wrong.text);
+  }
+  SUBCASE("--clean: feet stand, nothing trembles; clean does the same to files") {
+    const Said said = call("generate run --text walk --frames 60 --clean feet,smooth --out a --html a.html");
+    CHECK_MESSAGE(said.status == 0, said.text);
+    REQUIRE(call("generate run --text walk --frames 60 --out b").status == 0);
+    const Motion cleaned = to_motion(read_bvh("a/walk_000.bvh")),
+                 made = to_motion(read_bvh("b/walk_000.bvh"));
+    CHECK(cleaned.frames == made.frames);
+    CHECK(bytes_of("a/walk_000.bvh") != bytes_of("b/walk_000.bvh"));
+    REQUIRE(call("generate run --text walk --frames 60 --clean smooth --cutoff 0.5 --out s").status == 0);
+    CHECK(motiongan::mean_jerk(to_motion(read_bvh("s/walk_000.bvh"))) < 0.9 * motiongan::mean_jerk(made));
+    const Said by_itself = call("clean b --out c --html c.html");
+    CHECK_MESSAGE(by_itself.status == 0, by_itself.text);
+    CHECK(by_itself.has("wrote 1 clip to c"));
+    CHECK(by_itself.has("foot skating"));
+    CHECK(motiongan::mean_jerk(to_motion(read_bvh("c/walk_000.bvh"))) ==
+          doctest::Approx(motiongan::mean_jerk(cleaned)).epsilon(1e-3));
+    CHECK(bytes_of("c.html").find("walk_000, cleaned") != std::string::npos);
+    CHECK(call("clean b --out b").status == 1);
+    CHECK(call("clean b/walk_000.bvh --out b").has("is an input"));
+    CHECK(call("generate run --text walk --clean hands").status != 0);
   }
   SUBCASE("memory does not grow with the length") {
     const long some = peak_memory("generate run --text walk --frames 1000");

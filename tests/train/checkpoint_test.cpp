@@ -38,6 +38,10 @@ struct Run {
       all.push_back(adam->square().to_host());
       all.push_back({static_cast<float>(adam->steps())});
     }
+    if (const WeightMean* mean = trainer.parts()[0].mean) {
+      all.push_back(mean->values().to_host());
+      all.push_back({static_cast<float>(mean->steps())});
+    }
     all.push_back({static_cast<float>(trainer.iteration())});
     return all;
   }
@@ -83,6 +87,44 @@ TEST_CASE("a run that is stopped at any iteration and resumed equals an uninterr
   Run elsewhere;
   elsewhere.iterate(5);
   CHECK(elsewhere.state() != expected);
+}
+
+TEST_CASE("the running mean of the weights generates; those after the last step are in the checkpoint") {
+  const Scratch scratch;
+  const fs::path path = scratch.path / "checkpoint.safetensors";
+  Run run;
+  save_checkpoint(run.trainer, path);  // no step yet, and no mean
+  CHECK(Dvgan::load(run.context, path).options().hidden == 8);
+  run.iterate(4);
+  save_checkpoint(run.trainer, path);
+  const auto raw = all_values(run.model);
+  Dvgan by_default = Dvgan::load(run.context, path), last = Dvgan::load(run.context, path, WeightSource::raw);
+  CHECK(all_values(last) == raw);
+  CHECK(all_values(by_default) != raw);
+  use_means(run.trainer);
+  CHECK(all_values(by_default) == all_values(run.model));
+  by_default.save(scratch.path / "mean.safetensors");
+  CHECK(says(
+      message_of([&] { Dvgan::load(run.context, scratch.path / "mean.safetensors", WeightSource::raw); }),
+      "is no checkpoint"));
+
+  io::SafeTensors old = io::SafeTensors::read(path);  // of a version without means
+  std::erase_if(old.tensors, [](const auto& tensor) { return tensor.first.starts_with("mean."); });
+  std::erase_if(old.metadata, [](const auto& entry) { return entry.first.starts_with("mean."); });
+  old.write(path);
+  Run resumed;
+  load_checkpoint(resumed.trainer, path);
+  CHECK(resumed.trainer.parts()[0].mean->steps() == 0);
+  CHECK(all_values(resumed.model) == raw);
+  Dvgan without = Dvgan::load(run.context, path);
+  CHECK(all_values(without) == raw);
+
+  DvganTrainOptions options = small_options;
+  options.ema = 0;
+  Run plain(options);
+  plain.iterate(4);
+  CHECK(plain.trainer.parts()[0].mean == nullptr);
+  CHECK(all_values(plain.model) == raw);  // training itself is the same
 }
 
 TEST_CASE("the recurrent networks resume as well, but not from another model's checkpoint") {
@@ -140,8 +182,11 @@ TEST_CASE("a model loaded from a checkpoint generates the same motion") {
   Run run;
   run.iterate(2);
   save_checkpoint(run.trainer, scratch.path / "a");
-  const Dvgan loaded = Dvgan::load(run.context, scratch.path / "a");
+  const Dvgan last = Dvgan::load(run.context, scratch.path / "a", WeightSource::raw),
+              loaded = Dvgan::load(run.context, scratch.path / "a");
   const GenerateOptions three{.count = 3, .seed = 5};
+  CHECK(last.generate_poses("walk", three) == run.model.generate_poses("walk", three));
+  use_means(run.trainer);
   CHECK(loaded.generate_poses("walk", three) == run.model.generate_poses("walk", three));
 }
 

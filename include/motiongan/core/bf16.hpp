@@ -1,18 +1,8 @@
 // Weights of 16 bits: a bfloat16 is the upper half of a float, with its range and 8 bits of precision.
 #pragma once
-#include "motiongan/core/fields.hpp"
 #include "motiongan/core/keep_packed.hpp"
 
 namespace motiongan {
-
-/// How precise the weights of a model are when it generates.
-enum class WeightPrecision {
-  f32,  ///< as trained
-  bf16  ///< rounded to bfloat16: half the bytes to read, which is what few characters at a time wait for
-};
-constexpr NameTable<WeightPrecision, 2> enum_names(WeightPrecision) {
-  return {{{WeightPrecision::f32, "f32"}, {WeightPrecision::bf16, "bf16"}}};
-}
 
 /// Rounds every element to the nearest bfloat16, ties to even.
 inline void round_to_bf16(const Tensor& x) {

@@ -123,8 +123,9 @@ class ActionGan {
 
   /// Loads a file that save() wrote, or the generator in a checkpoint. Throws Error, naming the file and the
   /// problem, for any other file.
-  static ActionGan load(const Context& context, const std::filesystem::path& path) {
-    return load_model<ActionGan>(context, path);
+  static ActionGan load(const Context& context, const std::filesystem::path& path,
+                        WeightSource source = WeightSource::mean) {
+    return load_model<ActionGan>(context, path, source);
   }
 
   // Required by model_file.hpp.

@@ -158,8 +158,9 @@ class Dvgan {
 
   /// Loads a file that save() wrote, or the generator in a checkpoint. Throws Error, naming the file and the
   /// problem, for any other file.
-  static Dvgan load(const Context& context, const std::filesystem::path& path) {
-    return load_model<Dvgan>(context, path);
+  static Dvgan load(const Context& context, const std::filesystem::path& path,
+                    WeightSource source = WeightSource::mean) {
+    return load_model<Dvgan>(context, path, source);
   }
 
   // Required by model_file.hpp.

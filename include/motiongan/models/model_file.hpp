@@ -127,15 +127,31 @@ inline std::size_t most_parameters(const io::SafeTensors& file) {
   return 2 * n + 1'000'000;
 }
 
+/// Which weights of a training run are loaded.
+enum class WeightSource {
+  mean,  ///< their running mean, where the run keeps one (see WeightMean): what generates best
+  raw    ///< those after the last step; only a checkpoint holds them beside the mean
+};
+
 /// Loads a file that save_model() wrote, or the model in a checkpoint. Throws Error, naming the file and the
-/// problem, for any other file.
+/// problem, for any other file, and for the last weights of a file that is not a checkpoint.
 template <class Model>
-Model load_model(const Context& context, const std::filesystem::path& path) {
+Model load_model(const Context& context, const std::filesystem::path& path,
+                 WeightSource source = WeightSource::mean) {
   const std::string where = path.string();
   const io::SafeTensors file = io::SafeTensors::read(path);
   const auto options = model_options<Model>(file, where);
   auto format = model_format<Model>(file, where);
-  const std::string prefix = is_checkpoint(file) ? std::string(Model::part_name) + "." : "";
+  const bool in_checkpoint = is_checkpoint(file);
+  require(
+      source == WeightSource::mean || in_checkpoint, where,
+      " is no checkpoint, which alone holds the weights after the last step; give the checkpoint of the run");
+  std::string prefix = in_checkpoint ? std::string(Model::part_name) + "." : "";
+  const std::string means = "mean." + prefix;
+  const auto first = file.tensors.lower_bound(means);
+  if (in_checkpoint && source == WeightSource::mean && first != file.tensors.end() &&
+      first->first.starts_with(means))
+    prefix = means;
   const ParameterLimit limit(most_parameters(file), where);
   Model model(context, std::move(format), options);
   io::load_parameters(named_parameters(model), file, where, prefix);

@@ -29,6 +29,7 @@ struct AttentionTrainOptions {
   bool critic_classes = false;    ///< give the critic the class
   bool balanced = true;           ///< draw classes with equal probability, however many clips they have
   AdamOptions adam{};             ///< used for all three networks
+  double ema = 0.999;             ///< decay of the running mean of the generator's weights; 0: none
   std::uint64_t seed = 1;
 
   /// Update steps in an iteration; each draws its own random numbers.
@@ -66,6 +67,10 @@ struct AttentionTrainOptions {
     list.add(balanced, {.key = "balanced",
                         .help = "draw all classes with equal probability, however many clips they have"});
     adam.list_fields(list);
+    list.add(ema, {.key = "ema",
+                   .help = "decay of the running mean of the generator's weights, which then generates; 0: "
+                           "generate with the last weights",
+                   .range = Range::between(0, 0.999999)});
     list.add(seed, {.key = "seed", .help = "of the initial weights, batches and noise"});
   }
 };
@@ -126,13 +131,14 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
         critic_adam_(named_parameters(critic_), options.adam),
         classifier_adam_(named_parameters(classifier_), options.adam) {
     model.generator();  // throws for the baseline
+    if (options.ema > 0) mean_.emplace(generator_adam_, options.ema);
     detail::require_same_format(data.format, model.format());
   }
 
   AttentionCritic& critic() { return critic_; }
   AttentionClassifier& classifier() { return classifier_; }
   std::vector<TrainedPart> parts() override {
-    return {{"generator", named_parameters(model_), &generator_adam_},
+    return {{"generator", named_parameters(model_), &generator_adam_, mean_ ? &*mean_ : nullptr},
             {"critic", named_parameters(critic_), &critic_adam_},
             {"classifier", named_parameters(classifier_), &classifier_adam_}};
   }
@@ -235,6 +241,7 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
     const Frozen critic_fixed(named_parameters(critic_)), classifier_fixed(named_parameters(classifier_));
     const GeneratorLoss loss = generator_loss_of(windows_.draw(options_.seed, step, options_.batch), step);
     generator_adam_.step(grad(loss.total, generator_adam_.parameters()));
+    if (mean_) mean_->update();
     const auto value = [](const Var& part) { return part.empty() ? Var() : part.detach(); };
     generator_loss_ = {value(loss.total), value(loss.adversarial), value(loss.skeleton), value(loss.blend),
                        value(loss.classification)};
@@ -271,18 +278,22 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
   AttentionClassifier classifier_;
   SkeletonLoss skeleton_loss_;
   Adam generator_adam_, critic_adam_, classifier_adam_;
+  std::optional<WeightMean> mean_;  // of the generator
   Var wasserstein_, penalty_, classifier_loss_;
   GeneratorLoss generator_loss_;
   Tensor logits_;
   std::vector<std::size_t> labels_;
 };
 
-/// Trains the attention generator: a whole run, see run_training().
+/// Trains the attention generator: a whole run, see run_training(). The model then has the running mean of
+/// its weights, as the file of the run's generator has.
 inline RunResult train(ActionGan& model, const motion::ActionDataset& data,
                        const AttentionTrainOptions& options, const RunOptions& run = {}) {
   AttentionTrainer trainer(model, data, options);
-  return run_training(
+  const RunResult result = run_training(
       trainer, [&](const std::filesystem::path& path) { data.write_split(path); }, run);
+  use_means(trainer);
+  return result;
 }
 
 }  // namespace motiongan

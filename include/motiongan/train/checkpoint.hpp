@@ -70,6 +70,10 @@ inline io::SafeTensors checkpoint_of(Trainer& trainer, const RunNotes& notes = {
     for (const auto& [name, tensor] : part.optimizer->state())
       file.tensors[prefix + name] = detail::host_copy(tensor);
     file.metadata[prefix + "steps"] = std::to_string(part.optimizer->steps());
+    if (part.mean == nullptr || part.mean->steps() == 0) continue;
+    std::list<Var> means;
+    io::add_parameters(part.mean->means_of(part.parameters, means), file, mean_part(part.name) + ".");
+    file.metadata[mean_part(part.name) + ".steps"] = std::to_string(part.mean->steps());
   }
   if (const auto found = io::first_not_finite(file))
     throw DivergedError("training diverged by iteration ", trainer.iteration(), ": the tensor \"",
@@ -105,7 +109,7 @@ inline void restore_checkpoint(Trainer& trainer, const io::SafeTensors& file, co
   const std::vector<TrainedPart> parts = trainer.parts();
   std::list<Var> state;
   std::vector<NamedParameter> all;
-  std::vector<std::size_t> steps;
+  std::vector<std::size_t> steps, mean_steps;
   for (const TrainedPart& part : parts) {
     for (const NamedParameter& p : part.parameters)
       all.push_back({part.name + "." + p.name, p.value, p.layout});
@@ -113,9 +117,19 @@ inline void restore_checkpoint(Trainer& trainer, const io::SafeTensors& file, co
     for (const auto& [name, tensor] : part.optimizer->state())
       all.push_back({prefix + name, &state.emplace_back(Var::constant(tensor))});
     steps.push_back(detail::checkpoint_number(file, prefix + "steps", where));
+    // A run of an earlier version has no means: they begin now.
+    const std::string means = mean_part(part.name) + ".";
+    const bool has_mean = part.mean != nullptr && file.metadata.contains(means + "steps");
+    mean_steps.push_back(has_mean ? detail::checkpoint_number(file, means + "steps", where) : 0);
+    if (has_mean)
+      for (const NamedParameter& p : part.mean->means_of(part.parameters, state))
+        all.push_back({means + p.name, p.value, p.layout});
   }
   io::load_parameters(all, file, where);
-  for (std::size_t i = 0; i < parts.size(); ++i) parts[i].optimizer->set_steps(steps[i]);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    parts[i].optimizer->set_steps(steps[i]);
+    if (parts[i].mean != nullptr) parts[i].mean->set_steps(mean_steps[i]);
+  }
   trainer.set_iteration(iteration);
 }
 

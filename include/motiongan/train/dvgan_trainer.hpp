@@ -22,6 +22,7 @@ struct DvganTrainOptions {
   /// (the same number for the whole batch). Not in the paper: training on completions improves completion.
   /// Above 0 it requires an RNN generator.
   double completion_share = 0;
+  double ema = 0.999;  ///< decay of the running mean of the generator's weights (WeightMean); 0: none
   std::uint64_t seed = 1;
 
   /// Update steps in an iteration; each draws its own random numbers.
@@ -49,6 +50,10 @@ struct DvganTrainOptions {
               .range = Range::between(0, 1),
               .option = "--completions",
               .type = "FRACTION"});
+    list.add(ema, {.key = "ema",
+                   .help = "decay of the running mean of the generator's weights, which then generates; 0: "
+                           "generate with the last weights",
+                   .range = Range::between(0, 0.999999)});
     list.add(seed, {.key = "seed", .help = "of the initial weights, batches and noise"});
   }
 };
@@ -81,6 +86,7 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
                 options.critic),
         generator_adam_(named_parameters(model), options.adam),
         critic_adam_(named_parameters(critic_), options.adam) {
+    if (options.ema > 0) mean_.emplace(generator_adam_, options.ema);
     detail::require_same_format(data.format, model.format());
     if (options.completion_share > 0) model.rnn();  // throws for a CNN
   }
@@ -89,7 +95,7 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
   Adam& generator_adam() { return generator_adam_; }
   Adam& critic_adam() { return critic_adam_; }
   std::vector<TrainedPart> parts() override {
-    return {{"generator", named_parameters(model_), &generator_adam_},
+    return {{"generator", named_parameters(model_), &generator_adam_, mean_ ? &*mean_ : nullptr},
             {"critic", named_parameters(critic_), &critic_adam_}};
   }
 
@@ -138,6 +144,7 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
     }
     const Var loss = generator_loss(critic_(fake, h_txt));
     generator_adam_.step(grad(loss, generator_adam_.parameters()));
+    if (mean_) mean_->update();
     generator_loss_ = loss.detach();
   }
 
@@ -171,16 +178,20 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
   WindowSampler windows_;
   DvganCritic critic_;
   Adam generator_adam_, critic_adam_;
+  std::optional<WeightMean> mean_;  // of the generator
   CriticLoss critic_loss_;
   Var generator_loss_;
 };
 
-/// Trains a Dvgan: a whole run, see run_training().
+/// Trains a Dvgan: a whole run, see run_training(). The model then has the running mean of its weights, as
+/// the file of the run's generator has.
 inline RunResult train(Dvgan& model, const motion::Dataset& data, const DvganTrainOptions& options,
                        const RunOptions& run = {}) {
   DvganTrainer trainer(model, data, options);
-  return run_training(
+  const RunResult result = run_training(
       trainer, [&](const std::filesystem::path& path) { data.write_split(path); }, run);
+  use_means(trainer);
+  return result;
 }
 
 }  // namespace motiongan

@@ -60,6 +60,7 @@ class Interruption {
   static std::vector<Tensor> tensors_of(const TrainedPart& part) {
     std::vector<Tensor> out{part.optimizer->values()};
     for (const auto& [name, tensor] : part.optimizer->state()) out.push_back(tensor);
+    if (part.mean != nullptr) out.push_back(part.mean->values());
     return out;
   }
 
@@ -72,6 +73,7 @@ class Interruption {
         copy_tensor(tensor, kept_[at++]);
       }
       steps_.push_back(part.optimizer->steps());
+      steps_.push_back(part.mean != nullptr ? part.mean->steps() : 0);
     }
   }
 
@@ -80,6 +82,8 @@ class Interruption {
     for (const TrainedPart& part : trainer_.parts()) {
       for (const Tensor& tensor : tensors_of(part)) copy_tensor(kept_[at++], tensor);
       part.optimizer->set_steps(steps_[k++]);
+      if (part.mean != nullptr) part.mean->set_steps(steps_[k]);
+      ++k;
     }
   }
 

@@ -118,13 +118,14 @@ class RunFolder {
     if (problem) std::filesystem::copy_file(files_.checkpoint(), files_.previous_checkpoint(), problem);
   }
 
-  /// The files of the networks with their contents, all of which the checkpoint holds. The first is the
-  /// model.
+  /// The files of the networks with their contents, all of which the checkpoint holds: of a network with a
+  /// running mean, that. The first is the model.
   std::vector<std::pair<std::filesystem::path, io::SafeTensors>> networks_of(
       Trainer& trainer, const io::SafeTensors& checkpoint) const {
     std::vector<std::pair<std::filesystem::path, io::SafeTensors>> out;
     for (const TrainedPart& part : trainer.parts()) {
-      io::SafeTensors file = part_of_checkpoint(checkpoint, part.name);
+      io::SafeTensors file = part_of_checkpoint(checkpoint, mean_part(part.name));
+      if (file.tensors.empty()) file = part_of_checkpoint(checkpoint, part.name);
       if (out.empty()) file.metadata = model_metadata(checkpoint);
       out.emplace_back(files_.network(part.name), std::move(file));
     }

@@ -11,6 +11,7 @@
 #include "motiongan/data/position_format.hpp"
 #include "motiongan/models/model_file.hpp"
 #include "motiongan/optim/optimizer.hpp"
+#include "motiongan/optim/weight_mean.hpp"
 
 namespace motiongan {
 
@@ -25,7 +26,11 @@ struct TrainedPart {
   std::string name;  ///< prefix of its tensors in a checkpoint
   std::vector<NamedParameter> parameters;
   Optimizer* optimizer = nullptr;
+  WeightMean* mean = nullptr;  ///< of its weights, which are then what generates; or none
 };
+
+/// The name of a part's means in a checkpoint.
+inline std::string mean_part(const std::string& part) { return "mean." + part; }
 
 /// The sum of the steps of an iteration, or the largest number there is if that would be exceeded.
 inline std::size_t total_steps(std::initializer_list<std::size_t> parts) {
@@ -83,6 +88,13 @@ class Trainer {
 
   std::size_t iteration_ = 0;
 };
+
+/// Gives each network that has a running mean of its weights that mean. For the end of a training: the
+/// trainer should not go on from there.
+inline void use_means(Trainer& trainer) {
+  for (const TrainedPart& part : trainer.parts())
+    if (part.mean != nullptr) part.mean->apply();
+}
 
 namespace detail {
 

@@ -1,0 +1,42 @@
+// --clean: the clean-up of what a verb writes.
+#include "shared/cleaning.hpp"
+
+#include <algorithm>
+
+namespace motiongan::command {
+
+motion::Motion Cleaning::apply(const motion::Motion& motion, std::size_t given) const {
+  const auto has = [&](const char* part) {
+    return std::find(parts.begin(), parts.end(), part) != parts.end();
+  };
+  motion::CleanOptions now = options;
+  now.feet = has("feet"), now.smooth = has("smooth"), now.given = given;
+  return motion::clean(motion, now);
+}
+
+void add_clean_options(CLI::App& verb, Cleaning& cleaning, const std::string& without) {
+  const std::string group = "Clean-up";
+  verb.add_option(
+          "--clean", cleaning.parts,
+          "what to clean up: smooth filters trembling, feet puts a floating body on the floor and holds "
+          "feet still while they stand [" +
+              without + "]")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"feet", "smooth"}))
+      ->type_name("feet,smooth")
+      ->group(group);
+  verb.add_option("--cutoff", cleaning.options.cutoff, "movements faster than that are filtered, in Hz")
+      ->check(positive())
+      ->capture_default_str()
+      ->group(group);
+  verb.add_option("--feet", cleaning.options.foot_joints, "foot joints [toes, feet or ankles, by name]")
+      ->delimiter(',')
+      ->type_name("LEFT,RIGHT")
+      ->group(group);
+  verb.add_option("--unit-metres", cleaning.options.unit_metres,
+                  "metres per unit of the clips [a leg is taken as 1 m]")
+      ->check(positive())
+      ->group(group);
+}
+
+}  // namespace motiongan::command
