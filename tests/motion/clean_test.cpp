@@ -93,15 +93,14 @@ TEST_CASE("the low-pass keeps what is slow or steady, takes away what is fast, a
   for (const std::size_t at : {0u, 1u, 7u, 20u})  // also at the ends
     CHECK(filtered(kernel, 21, at, [](std::size_t i) { return 3.0 + 2 * static_cast<double>(i); }) ==
           doctest::Approx(3.0 + 2 * static_cast<double>(at)));
-  const Motion walk = built_in(0), rough = trembling(walk, 0.02 * leg_of(walk)),
-               smooth = low_pass(rough, 3);
+  const Motion walk = built_in(0), rough = trembling(walk, 0.02 * leg_of(walk)), smooth = low_pass(rough, 3);
   CHECK(mean_jerk(rough) > 5 * mean_jerk(walk));
   CHECK(mean_jerk(smooth) < 0.2 * mean_jerk(rough));
   CHECK(says(message_of([&] { low_pass(walk, 0); }), "a low-pass of 0 Hz"));
 }
 
 TEST_CASE("feet that stand are held where they are, and slide no more") {
-  Motion walk = built_in(11, 25);  // marching: feet are high between two stands
+  Motion walk = built_in(11, 25);                // marching: feet are high between two stands
   for (std::size_t f = 0; f < walk.frames; ++f)  // sideways, so that no foot can stand
     walk.position(f, 0)[0] += 0.55 * leg_of(walk) * static_cast<double>(f) / walk.rate;
   const FootSkate before = foot_skate(walk);
