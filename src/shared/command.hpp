@@ -5,6 +5,7 @@
 #include "shared/numbers.hpp"
 // Must follow numbers.hpp, which says how it reads numbers.
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstddef>
 #include <cstdlib>
 #include <filesystem>
@@ -57,7 +58,7 @@ inline std::string brief(double value, int digits = 4) { return fmt::format("{:.
 /// "8 s", "2 min 5 s", "1 h 20 min".
 inline std::string duration(double seconds) {
   if (seconds < 120) return brief(seconds, seconds < 10 ? 3 : 4) + " s";
-  const auto whole = static_cast<std::size_t>(seconds + 0.5);
+  const auto whole = static_cast<std::size_t>(std::lround(seconds));
   const bool hours = whole >= 7200;
   const std::size_t large = whole / (hours ? 3600 : 60), small = hours ? whole % 3600 / 60 : whole % 60;
   const std::string first = fmt::format("{} {}", large, hours ? "h" : "min");
