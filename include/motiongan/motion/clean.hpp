@@ -30,8 +30,7 @@ struct CleanOptions {
   double shortest = 0.1;                      ///< seconds that a foot stands at least
   double blend = 0.12;                        ///< seconds in which a held foot is let go, and taken hold of
   double play = 0.04;                         ///< a standing foot may be that far above or below the floor
-  std::size_t given =
-      0;  ///< first frames that stay as they are; the change sets in over twice `blend` after them
+  std::size_t given = 0;  ///< first frames, to stay as they are; twice `blend` after them all is changed
   double airborne = 0.7;  ///< seconds after which a body above the floor is not jumping but floating
 };
 
