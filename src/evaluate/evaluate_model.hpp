@@ -1,7 +1,7 @@
 // Prints the evaluation of a generator.
 #pragma once
-#include "evaluate/evaluate_motion.hpp"
 #include "motiongan/experiments/model_evaluation.hpp"
+#include "shared/quality.hpp"
 
 namespace motiongan::command {
 

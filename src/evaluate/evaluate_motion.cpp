@@ -1,5 +1,5 @@
 // motiongan evaluate motion: compares files of generated and real motion by metrics that need no model.
-#include "evaluate/evaluate_motion.hpp"
+#include "shared/quality.hpp"
 
 #include <map>
 

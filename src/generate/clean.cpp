@@ -1,9 +1,9 @@
 // motiongan clean: cleans up clips that exist.
 #include "motiongan/formats/bvh.hpp"
-#include "motiongan/metrics/motion_quality.hpp"
 #include "shared/cleaning.hpp"
 #include "shared/clip_reading.hpp"
 #include "shared/outputs.hpp"
+#include "shared/quality.hpp"
 #include "shared/show.hpp"
 
 namespace motiongan::command {
@@ -16,22 +16,14 @@ struct CleanArgs {
   motion::ClipOptions clips{.first_frame = motion::FirstFrame::keep};
 };
 
-/// Jerk, foot skating and feet near the floor, before and after.
+/// What `evaluate motion` measures, before and after.
 void print_change(const std::vector<motion::Motion>& before, const std::vector<motion::Motion>& after,
                   const Cleaning& cleaning) {
   FootSkateOptions options;
   options.feet = cleaning.options.foot_joints, options.unit_metres = cleaning.options.unit_metres;
-  const MotionQuality was = measure_quality(before, options), is = measure_quality(after, options);
-  std::vector<std::vector<std::string>> rows{{fmt::format("jerk, {}/s^3", was.length_unit),
-                                              fmt::format("{:.1f}", was.jerk),
-                                              fmt::format("{:.1f}", is.jerk)}};
-  if (was.feet && is.feet) {
-    rows.push_back({"foot skating, % of steps", fmt::format("{:.1f}", 100 * was.feet->ratio()),
-                    fmt::format("{:.1f}", 100 * is.feet->ratio())});
-    rows.push_back({"a foot near the floor, %", fmt::format("{:.1f}", 100 * was.feet->contact_share()),
-                    fmt::format("{:.1f}", 100 * is.feet->contact_share())});
-  }
-  print_table({"", "before", "after"}, rows, "lrr");
+  const MotionQuality was = measure_quality(before, options);
+  print_table({"", "before", "after"}, quality_rows(was, measure_quality(after, options)), "lrr");
+  print_quality_notes(was, options);
 }
 
 int clean_clips(CleanArgs args) {

@@ -179,15 +179,13 @@ int complete(const CompleteArgs& args) {
                               .seed = args.seed,
                               .sample = static_cast<std::uint32_t>(args.first_sample + i),
                               .prior = &prior.seed});
-  if (args.cleaning.on()) job.kept = prior.seed.frames + args.frames;
+  if (args.cleaning.on())
+    job.finish = [&](motion::Motion motion) {
+      return args.cleaning.apply(std::move(motion), prior.seed.frames);
+    };
   catch_signals();
-  auto made = write_streamed(model, job);
+  const auto made = write_streamed(model, job);
   if (!made) return stopped(0);
-  for (std::size_t i = 0; args.cleaning.on() && i < made->size(); ++i) {
-    motion::Motion& motion = (*made)[i] = args.cleaning.apply((*made)[i], prior.seed.frames);
-    const motion::Motion sized = motion::scaled(motion, job.scale);
-    motion::write_bvh(files[i], args.rate > 0 ? motion::resample(sized, args.rate) : sized);
-  }
 
   const double seconds = static_cast<double>(args.frames) / format.rate;
   fmt::print("\"{}\": {}\n", args.text, named(job.files));

@@ -44,7 +44,7 @@ std::vector<motion::Motion> write_whole(const Dvgan& model, const std::string& t
       meter.add(poses, poses.size() / model.format().dof());
       drift->add(meter);
     }
-    motions.push_back(model.format().to_motion(poses));
+    motions.push_back(args.cleaning.apply(model.format().to_motion(poses)));
     const motion::Motion& made = motions.back();
     motion::write_bvh(files[motions.size() - 1], args.rate > 0 ? motion::resample(made, args.rate) : made);
   }
@@ -62,7 +62,8 @@ std::optional<std::vector<motion::Motion>> write_long(const Dvgan& model, const 
                               .seed = args.options.seed,
                               .sample = static_cast<std::uint32_t>(args.options.first_sample + i)});
   if (!args.html.empty() || !args.png.empty()) job.kept = shown_frames(model.format().rate, args.rate);
-  if (args.cleaning.on()) job.kept = frames;
+  if (args.cleaning.on())
+    job.finish = [&](motion::Motion motion) { return args.cleaning.apply(std::move(motion)); };
   return write_streamed(model, job, drift);
 }
 
@@ -94,13 +95,9 @@ int generate(const GenerateArgs& args, const fs::path& file) {
       name = fmt::format("{}-{}", slug(text), again);
     const std::vector<fs::path> files =
         sample_files(out, name, args.options.first_sample, args.options.count);
-    auto motions = streamed ? write_long(model, text, args, made, files, measured)
-                            : write_whole(model, text, args, files, measured);
+    const auto motions = streamed ? write_long(model, text, args, made, files, measured)
+                                  : write_whole(model, text, args, files, measured);
     if (!motions) return stopped(files_made);
-    for (std::size_t i = 0; args.cleaning.on() && i < files.size(); ++i) {
-      motion::Motion& motion = (*motions)[i] = args.cleaning.apply((*motions)[i]);
-      motion::write_bvh(files[i], args.rate > 0 ? motion::resample(motion, args.rate) : motion);
-    }
     files_made += files.size();
     fmt::print("\"{}\": {}\n", text, named(files));
     if (args.html.empty() && args.png.empty()) continue;

@@ -182,8 +182,7 @@ int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const
     motion::in_two_threads(count, [&](std::size_t i) {
       if (shows || args.format == "bvh")
         motions[i] = motion_from_positions(clips[i], priors[first + i].reference);
-      if (args.cleaning.on())
-        motions[i] = args.cleaning.apply(motions[i], args.with_prior ? format.frames : 0);
+      motions[i] = args.cleaning.apply(std::move(motions[i]), args.with_prior ? format.frames : 0);
       write_action_clip(files[first + i], clips[i], motions[i], args.rate);
     });
     for (std::size_t i = 0; shows && i < count; ++i) {

@@ -2,9 +2,9 @@
 #include "generate/streaming.hpp"
 
 #include <cmath>
-#include <functional>
 #include <memory>
 
+#include "motiongan/formats/bvh.hpp"
 #include "motiongan/formats/bvh_stream.hpp"
 #include "motiongan/motion/body.hpp"
 #include "motiongan/train/progress.hpp"
@@ -46,18 +46,20 @@ bool write_some(const Dvgan& model, const StreamJob& job, std::size_t first, std
   const std::vector<CharacterId> ids = stream.add(std::vector(
       job.characters.begin() + offset, job.characters.begin() + offset + static_cast<std::ptrdiff_t>(count)));
   const bool begun = job.before.frames > 0;
+  const std::size_t keep = job.finish ? job.before.frames + job.frames : job.kept;
   std::vector<Growing> growing;
   for (std::size_t i = 0; i < count; ++i) {
     const motion::Skeleton& skeleton = begun ? job.before.skeleton : model.format().skeleton();
-    growing.push_back(
-        {ids[i],
-         std::make_unique<GrowingFile>(job.files[first + i], scaled(skeleton, job.scale),
-                                       job.before.frames + job.frames, rate, job.rate > 0 ? job.rate : rate),
-         DriftMeter(model.format()),
-         {}});
+    growing.push_back({ids[i],
+                       job.finish ? nullptr
+                                  : std::make_unique<GrowingFile>(
+                                        job.files[first + i], scaled(skeleton, job.scale),
+                                        job.before.frames + job.frames, rate, job.rate > 0 ? job.rate : rate),
+                       DriftMeter(model.format()),
+                       {}});
     if (!begun) continue;
-    growing.back().file->append(motion::scaled(job.before, job.scale));
-    growing.back().kept = slice(job.before, 0, std::min(job.kept, job.before.frames));
+    if (!job.finish) growing.back().file->append(motion::scaled(job.before, job.scale));
+    growing.back().kept = slice(job.before, 0, std::min(keep, job.before.frames));
   }
   for (std::size_t at = 0; at < job.frames; at += at_a_time) {
     if (stop_requested()) return false;
@@ -65,17 +67,24 @@ bool write_some(const Dvgan& model, const StreamJob& job, std::size_t first, std
     stream.step(frames);
     for (Growing& g : growing) {
       const motion::Motion piece = stream.motion(g.id);
-      g.file->append(motion::scaled(piece, job.scale));
+      if (!job.finish) g.file->append(motion::scaled(piece, job.scale));
       if (drift != nullptr) g.drift.add(stream.poses(g.id), frames);
-      const std::size_t wanted = std::min(frames, job.kept - std::min(job.kept, g.kept.frames));
+      const std::size_t wanted = std::min(frames, keep - std::min(keep, g.kept.frames));
       if (wanted == 0) continue;
       g.kept =
           g.kept.frames == 0 ? slice(piece, 0, wanted) : join(std::move(g.kept), slice(piece, 0, wanted));
     }
     made(frames);
   }
-  for (Growing& g : growing) {
-    g.file->finish();
+  for (std::size_t i = 0; i < count; ++i) {
+    Growing& g = growing[i];
+    if (job.finish) {
+      g.kept = job.finish(std::move(g.kept));
+      const motion::Motion sized = motion::scaled(g.kept, job.scale);
+      motion::write_bvh(job.files[first + i], job.rate > 0 ? motion::resample(sized, job.rate) : sized);
+    } else {
+      g.file->finish();
+    }
     if (drift != nullptr) drift->add(g.drift);
     all_kept.push_back(std::move(g.kept));
   }

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 
+#include "shared/quality.hpp"
+
 namespace motiongan::command {
 
-motion::Motion Cleaning::apply(const motion::Motion& motion, std::size_t given) const {
+motion::Motion Cleaning::apply(motion::Motion motion, std::size_t given) const {
+  if (!on()) return motion;
   const auto has = [&](const char* part) {
     return std::find(parts.begin(), parts.end(), part) != parts.end();
   };
@@ -29,14 +32,7 @@ void add_clean_options(CLI::App& verb, Cleaning& cleaning, const std::string& wi
       ->check(positive())
       ->capture_default_str()
       ->group(group);
-  verb.add_option("--feet", cleaning.options.foot_joints, "foot joints [toes, feet or ankles, by name]")
-      ->delimiter(',')
-      ->type_name("LEFT,RIGHT")
-      ->group(group);
-  verb.add_option("--unit-metres", cleaning.options.unit_metres,
-                  "metres per unit of the clips [a leg is taken as 1 m]")
-      ->check(positive())
-      ->group(group);
+  add_body_options(verb, cleaning.options.unit_metres, cleaning.options.foot_joints, group);
 }
 
 }  // namespace motiongan::command

@@ -11,8 +11,8 @@ struct Cleaning {
 
   bool on() const { return !parts.empty(); }
 
-  /// The motion cleaned up; the first `given` frames stay as they are.
-  motion::Motion apply(const motion::Motion& motion, std::size_t given = 0) const;
+  /// The motion cleaned up, if anything is to be; the first `given` frames stay as they are.
+  motion::Motion apply(motion::Motion motion, std::size_t given = 0) const;
 };
 
 /// Adds --clean and what belongs to it; `without` says, for --help, what is done without it.

@@ -1,4 +1,4 @@
-// Metrics of motion that need no model; shared by `evaluate motion` and `evaluate model`.
+// Metrics of motion that need no model; shared by `evaluate motion`, `evaluate model` and `clean`.
 #pragma once
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -8,14 +8,20 @@
 
 namespace motiongan::command {
 
-/// Adds --unit-metres and --feet to a verb.
-inline void add_quality_options(CLI::App& verb, FootSkateOptions& options) {
-  verb.add_option("--unit-metres", options.unit_metres,
+/// Adds --unit-metres and --feet to a verb, under a heading of --help.
+inline void add_body_options(CLI::App& verb, double& unit_metres, std::vector<std::string>& feet,
+                             const std::string& group = "Options") {
+  verb.add_option("--unit-metres", unit_metres,
                   "metres per unit of the clips (CMU 0.05644, Bandai-Namco 0.01) [a leg is taken as 1 m]")
-      ->check(positive());
-  verb.add_option("--feet", options.feet, "foot joints [toes, feet or ankles, by name]")
+      ->check(positive())
+      ->group(group);
+  verb.add_option("--feet", feet, "foot joints [toes, feet or ankles, by name]")
       ->delimiter(',')
-      ->type_name("LEFT,RIGHT");
+      ->type_name("LEFT,RIGHT")
+      ->group(group);
+}
+inline void add_quality_options(CLI::App& verb, FootSkateOptions& options) {
+  add_body_options(verb, options.unit_metres, options.feet);
 }
 
 /// A number with `decimals`; "-" if it is not finite.
