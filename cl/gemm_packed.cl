@@ -28,10 +28,10 @@ static inline void multiply_panels_1(global const real* a, uint count, global co
   realv s4 = sums[4], s5 = sums[5], s6 = sums[6], s7 = sums[7];
   for (uint p = 0; p < count; ++p, b += WEIGHT_ROW) {
     const realv value = a[p];
-    READ_WEIGHTS(b, b0, b1)
-    READ_WEIGHTS(b + panel, b2, b3)
-    READ_WEIGHTS(b + 2 * panel, b4, b5)
-    READ_WEIGHTS(b + 3 * panel, b6, b7)
+    READ_WEIGHTS(b, b0, b1);
+    READ_WEIGHTS(b + panel, b2, b3);
+    READ_WEIGHTS(b + 2 * panel, b4, b5);
+    READ_WEIGHTS(b + 3 * panel, b6, b7);
     s0 = fma(value, b0, s0), s1 = fma(value, b1, s1);
     s2 = fma(value, b2, s2), s3 = fma(value, b3, s3);
     s4 = fma(value, b4, s4), s5 = fma(value, b5, s5);
@@ -131,11 +131,15 @@ __attribute__((reqd_work_group_size(1, 1, 1))) kernel void gemm_pack_gates(globa
   }
 #define GATES_STORE(r) z[4 * r] = i##r, z[4 * r + 1] = f##r, z[4 * r + 2] = g##r, z[4 * r + 3] = o##r;
 // z[R][4] = R rows of A times the two panels of VW units.
-#define DEFINE_MULTIPLY_GATES(R)                                                                           \
-  static inline void multiply_gates_##R(global const real* a, size_t row_stride, uint count,               \
-                                        global const weight* w, size_t panel, realv* z) {                  \
-    ROWS_##R(GATES_ZERO) for (uint p = 0; p < count; ++p, ++a, w += WEIGHT_ROW){                           \
-        READ_WEIGHTS(w, w0, w1) READ_WEIGHTS(w + panel, w2, w3) ROWS_##R(GATES_FMA)} ROWS_##R(GATES_STORE) \
+#define DEFINE_MULTIPLY_GATES(R)                                                             \
+  static inline void multiply_gates_##R(global const real* a, size_t row_stride, uint count, \
+                                        global const weight* w, size_t panel, realv* z) {    \
+    ROWS_##R(GATES_ZERO) for (uint p = 0; p < count; ++p, ++a, w += WEIGHT_ROW) {            \
+      READ_WEIGHTS(w, w0, w1);                                                               \
+      READ_WEIGHTS(w + panel, w2, w3);                                                       \
+      ROWS_##R(GATES_FMA)                                                                    \
+    }                                                                                        \
+    ROWS_##R(GATES_STORE)                                                                    \
   }
 #if VW * REAL_BYTES == 64
 #define MOST_GATE_ROWS 6

@@ -8,13 +8,13 @@ typedef uint weight;
 #define WEIGHT_ROW VW
 #define READ_WEIGHTS(p, first, second)    \
   const bitsv pair_##first = vload(0, p); \
-  const realv first = from_bf16(pair_##first << 16), second = from_bf16(pair_##first & (uint)0xffff0000u);
+  const realv first = from_bf16(pair_##first << 16), second = from_bf16(pair_##first & (uint)0xffff0000u)
 #define WRITE_WEIGHTS(p, first, second) vstore(to_bf16(first) >> 16 | to_bf16(second), 0, p)
 #define PREFETCH_WEIGHTS(p) PREFETCH((p) + ROWS_AHEAD * WEIGHT_ROW)
 #else
 typedef real weight;
 #define WEIGHT_ROW COLUMNS
-#define READ_WEIGHTS(p, first, second) const realv first = READ(p), second = READ((p) + VW);
+#define READ_WEIGHTS(p, first, second) const realv first = READ(p), second = READ((p) + VW)
 #define WRITE_WEIGHTS(p, first, second) \
   WRITE(p, first);                      \
   WRITE((p) + VW, second)
@@ -37,7 +37,7 @@ typedef real weight;
     ROWS_##R(LOAD) for (uint p = 0; p < count; ++p, ++a, b += WEIGHT_ROW, next += R) {       \
       PREFETCH(next);                                                                        \
       PREFETCH_WEIGHTS(b);                                                                   \
-      READ_WEIGHTS(b, b0, b1)                                                                \
+      READ_WEIGHTS(b, b0, b1);                                                               \
       ROWS_##R(FMA_PANEL)                                                                    \
     }                                                                                        \
     ROWS_##R(STORE)                                                                          \

@@ -127,6 +127,9 @@ inline std::size_t most_parameters(const io::SafeTensors& file) {
   return 2 * n + 1'000'000;
 }
 
+/// The name of the running means of a network's weights in a checkpoint.
+inline std::string mean_part(const std::string& part) { return "mean." + part; }
+
 /// Which weights of a training run are loaded.
 enum class WeightSource {
   mean,  ///< their running mean, where the run keeps one (see WeightMean): what generates best
@@ -147,7 +150,7 @@ Model load_model(const Context& context, const std::filesystem::path& path,
       source == WeightSource::mean || in_checkpoint, where,
       " is no checkpoint, which alone holds the weights after the last step; give the checkpoint of the run");
   std::string prefix = in_checkpoint ? std::string(Model::part_name) + "." : "";
-  const std::string means = "mean." + prefix;
+  const std::string means = mean_part(prefix);
   const auto first = file.tensors.lower_bound(means);
   if (in_checkpoint && source == WeightSource::mean && first != file.tensors.end() &&
       first->first.starts_with(means))

@@ -98,6 +98,9 @@ inline std::vector<double> smoothed(const std::vector<double>& values, double cu
   return out;
 }
 
+/// 0 .. 1 with a slope of 0 at both ends.
+inline double ease(double t) { return t * t * (3 - 2 * t); }
+
 /// One clean-up: the motion, and what is found in it.
 class Cleaner {
  public:
@@ -135,11 +138,13 @@ class Cleaner {
   }
 
  private:
+  /// Of the feet, in the world: [legs][frames].
   std::vector<std::vector<Vec3>> places() const {
+    const std::vector<Vec3> all = joint_positions(motion_);
     std::vector<std::vector<Vec3>> out(legs_.size());
     for (std::size_t l = 0; l < legs_.size(); ++l)
       for (std::size_t f = 0; f < motion_.frames; ++f)
-        out[l].push_back(world_joint(motion_, f, legs_[l].foot).position);
+        out[l].push_back(all[f * motion_.skeleton.size() + legs_[l].foot]);
     return out;
   }
 
@@ -188,7 +193,7 @@ class Cleaner {
       const double most = std::min(blend, static_cast<double>(end - begin + 1) / 2);
       const auto share = [&](std::size_t distance) {  // of a move, that many frames from where it is whole
         const double t = std::clamp(1 - static_cast<double>(distance) / (most + 0.5), 0.0, 1.0);
-        return t * t * (3 - 2 * t);
+        return ease(t);
       };
       for (std::size_t f = begin; f < end; ++f) {
         if (c > 0) out[f] = add(out[f], scale(out[begin - 1], share(f - begin + 1)));
@@ -227,16 +232,12 @@ class Cleaner {
   double metre_ = 1, floor_ = 0;
 };
 
-}  // namespace clean_detail
-
-namespace clean_detail {
-
 /// `to`, with the first `given` frames of `from` and a smooth change over `blend` frames after them.
 inline Motion after_given(const Motion& from, Motion to, std::size_t given, double blend) {
   for (std::size_t f = 0; f < to.frames; ++f) {
     const double t = f < given ? 0 : std::min((static_cast<double>(f - given) + 1) / (blend + 1), 1.0);
     if (t == 1) break;
-    const double share = t * t * (3 - 2 * t);
+    const double share = ease(t);
     for (std::size_t j = 0; j < to.skeleton.size(); ++j) {
       to.rotation(f, j) = slerp(from.rotation(f, j), to.rotation(f, j), share);
       to.position(f, j) = add(scale(from.position(f, j), 1 - share), scale(to.position(f, j), share));

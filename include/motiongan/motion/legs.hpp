@@ -10,6 +10,7 @@
 #include "motiongan/core/error.hpp"
 #include "motiongan/motion/feet.hpp"
 #include "motiongan/motion/kinematics.hpp"
+#include "motiongan/motion/rotation_fit.hpp"
 
 namespace motiongan::motion {
 
@@ -66,24 +67,6 @@ inline WorldJoint world_joint(const Motion& motion, std::size_t frame, std::size
 
 namespace legs_detail {
 
-/// The shortest rotation of the direction `from` to `to`; none if either has no length.
-inline Quat shortest_arc(const Vec3& from, const Vec3& to) {
-  const double size = length(from) * length(to);
-  if (size <= 0) return {};
-  const Vec3 axis = cross(from, to);
-  const double w = size + dot(from, to);
-  if (w < 1e-9 * size) {  // opposite directions: half a turn about any axis across
-    const Vec3 across = cross(from, std::abs(from[0]) < 0.7 * length(from) ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
-    return normalize({0, across[0], across[1], across[2]});
-  }
-  return normalize({w, axis[0], axis[1], axis[2]});
-}
-
-inline Quat about(const Vec3& axis, double angle) {
-  const double size = length(axis), s = size > 0 ? std::sin(angle / 2) / size : 0;
-  return {std::cos(angle / 2), s * axis[0], s * axis[1], s * axis[2]};
-}
-
 /// The joint's local rotation for its rotation in the world, of parents as they are.
 inline void set_world_rotation(Motion& motion, std::size_t frame, std::size_t joint, const Quat& rotation) {
   const int parent = motion.skeleton.joints[joint].parent;
@@ -120,9 +103,10 @@ inline void reach(Motion& motion, std::size_t frame, const Leg& leg, const Vec3&
     const Vec3 toes = subtract(world_joint(motion, frame, leg.foot).position, ankle.position);
     axis = cross(toes, scale(now, -1));
   }
-  const Quat bend = detail::about(axis, angle_at_knee(distance) - angle_at_knee(length(now)));
+  const double across = length(axis), angle = angle_at_knee(distance) - angle_at_knee(length(now));
+  const Quat bend = across > 0 ? quat_from_expmap(scale(axis, angle / across)) : Quat{};
   const Vec3 bent = add(thigh, rotate(bend, shin));
-  const Quat turn = detail::shortest_arc(bent, wish);
+  const Quat turn = shortest_rotation(scale(bent, 1 / length(bent)), scale(wish, 1 / wished), {});
   detail::set_world_rotation(motion, frame, leg.thigh, multiply(turn, hip.rotation));
   detail::set_world_rotation(motion, frame, leg.knee, multiply(turn, multiply(bend, knee.rotation)));
   detail::set_world_rotation(motion, frame, leg.ankle, ankle.rotation);

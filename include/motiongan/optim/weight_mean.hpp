@@ -5,6 +5,7 @@
 #include <list>
 #include <vector>
 
+#include "motiongan/core/fields.hpp"
 #include "motiongan/optim/optimizer.hpp"
 
 namespace motiongan {
@@ -70,5 +71,13 @@ class WeightMean {
   Tensor values_;
   std::size_t steps_ = 0;
 };
+
+/// The option of the trainings that keep one.
+inline void list_ema(FieldList& list, double& decay) {
+  list.add(decay, {.key = "ema",
+                   .help = "decay of the running mean of the generator's weights, which then generates; 0: "
+                           "generate with the last weights",
+                   .range = Range::between(0, 0.999999)});
+}
 
 }  // namespace motiongan

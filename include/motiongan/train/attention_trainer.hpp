@@ -67,10 +67,7 @@ struct AttentionTrainOptions {
     list.add(balanced, {.key = "balanced",
                         .help = "draw all classes with equal probability, however many clips they have"});
     adam.list_fields(list);
-    list.add(ema, {.key = "ema",
-                   .help = "decay of the running mean of the generator's weights, which then generates; 0: "
-                           "generate with the last weights",
-                   .range = Range::between(0, 0.999999)});
+    list_ema(list, ema);
     list.add(seed, {.key = "seed", .help = "of the initial weights, batches and noise"});
   }
 };

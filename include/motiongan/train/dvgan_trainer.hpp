@@ -50,10 +50,7 @@ struct DvganTrainOptions {
               .range = Range::between(0, 1),
               .option = "--completions",
               .type = "FRACTION"});
-    list.add(ema, {.key = "ema",
-                   .help = "decay of the running mean of the generator's weights, which then generates; 0: "
-                           "generate with the last weights",
-                   .range = Range::between(0, 0.999999)});
+    list_ema(list, ema);
     list.add(seed, {.key = "seed", .help = "of the initial weights, batches and noise"});
   }
 };

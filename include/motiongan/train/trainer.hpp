@@ -29,9 +29,6 @@ struct TrainedPart {
   WeightMean* mean = nullptr;  ///< of its weights, which are then what generates; or none
 };
 
-/// The name of a part's means in a checkpoint.
-inline std::string mean_part(const std::string& part) { return "mean." + part; }
-
 /// The sum of the steps of an iteration, or the largest number there is if that would be exceeded.
 inline std::size_t total_steps(std::initializer_list<std::size_t> parts) {
   std::size_t sum = 0;
