@@ -60,7 +60,8 @@ TEST_CASE("a format round-trips through JSON text") {
 }
 
 TEST_CASE("root representations and the training range survive JSON; older files have no range") {
-  for (const RootRotation form : {RootRotation::expmap, RootRotation::heading, RootRotation::velocity}) {
+  for (const RootRotation form :
+       {RootRotation::expmap, RootRotation::heading, RootRotation::velocity, RootRotation::support}) {
     MotionFormat a = small_format();
     a.layout = PoseLayout(a.skeleton(), true, 1, form);
     nlohmann::json json = io::to_json(a);

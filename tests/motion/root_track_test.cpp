@@ -44,9 +44,9 @@ Motion every(const Motion& motion, std::size_t start, std::size_t stride, std::s
 }
 
 std::vector<LabelledMotion> curves() {
-  return {{"a", curved_walk(0, {}, 60), {"walk"}},
-          {"b", curved_walk(2.5, {5, 0, -3}, 50), {"walk"}},
-          {"c", curved_walk(-1, {100, 2, 7}, 45), {"walk"}}};
+  return {{"a", curved_walk_on_legs(0, {}, 60), {"walk"}},
+          {"b", curved_walk_on_legs(2.5, {5, 0, -3}, 50), {"walk"}},
+          {"c", curved_walk_on_legs(-1, {100, 2, 7}, 45), {"walk"}}};
 }
 
 }  // namespace
@@ -106,9 +106,70 @@ TEST_CASE("a long walk survives encoding and decoding, from where it started") {
   CHECK(spun.position(2999, 0) == Vec3{});
 }
 
+TEST_CASE("the support's height and steps are encoded, and decoded back") {
+  const Motion m = curved_walk_on_legs(0.4, {3, 1, -2}, 300);
+  const PoseLayout layout(m.skeleton, true, 0, RootRotation::support);
+  const std::size_t at = layout.position_dim();
+  CHECK(layout.name(at) == "Hips.support.x");
+  CHECK(layout.name(at + 1) == "Hips.support.y");
+  const std::vector<double> poses = layout.encode(m);
+  const std::vector<Vec3> world = joint_positions(m);
+  const std::size_t joints = m.skeleton.size();
+  std::size_t feet[2] = {};
+  for (std::size_t f = 1; f < m.frames; ++f) {
+    const double* const place = &poses[f * layout.dof() + at];
+    double low = 1e9;
+    for (std::size_t j = 0; j < joints; ++j) low = std::min(low, world[f * joints + j][1]);
+    CHECK(place[1] == doctest::Approx(low).epsilon(1e-9));
+    const auto over_both = [&](std::size_t j) {
+      return world[f * joints + j][1] + world[(f - 1) * joints + j][1];
+    };
+    const std::size_t foot = over_both(3) < over_both(5) ? 3 : 5;
+    ++feet[foot == 3 ? 0 : 1];
+    const Vec3 step = subtract(world[f * joints + foot], world[(f - 1) * joints + foot]);
+    CHECK(std::hypot(place[0], place[2]) == doctest::Approx(std::hypot(step[0], step[2])).epsilon(1e-9));
+  }
+  CHECK((feet[0] > 50 && feet[1] > 50));
+  RootTrack start = layout.track_of(m, 0);
+  start.started = false;
+  const Difference there = difference(layout.decode(poses, m.frames, m.rate, &start), m);
+  CHECK(there.position < 1e-9);
+  CHECK(there.angle < 1e-7);
+  RootTrack middle = layout.track_of(m, 99);
+  const std::span<const double> rest = std::span(poses).subspan(100 * layout.dof());
+  CHECK(difference(layout.decode(rest, 200, 10, &middle), slice(m, 100, 200)).position < 1e-9);
+  RootTrack followed = layout.track_of(m, 0);
+  for (std::size_t f = 1; f < m.frames; ++f)
+    layout.follow(std::span(poses).subspan(f * layout.dof(), layout.dof()), followed);
+  CHECK(std::abs(followed.x - m.position(m.frames - 1, 0)[0]) < 1e-9);
+}
+
+TEST_CASE("an error of a leg's rotation moves the body, not the foot that stands") {
+  const Motion m = curved_walk_on_legs(0, {}, 80);
+  const PoseLayout layout(m.skeleton, true, 0, RootRotation::support);
+  std::vector<double> poses = layout.encode(m);
+  for (std::size_t f = 0; f < m.frames; ++f) {
+    double* const pose = &poses[f * layout.dof()];
+    pose[3 * 2] += 0.1 * std::sin(5.0 * static_cast<double>(f));  // the left leg trembles
+    for (std::size_t d = 0; d < 3; ++d) pose[layout.position_dim() + d] = 0;
+  }
+  const std::vector<Vec3> world = joint_positions(layout.decode(poses, m.frames, m.rate));
+  const std::size_t joints = m.skeleton.size();
+  for (std::size_t f = 1; f < m.frames; ++f) {
+    double low = 1e9, still = 1e9;
+    for (std::size_t j = 0; j < joints; ++j) {
+      const Vec3 &before = world[(f - 1) * joints + j], &now = world[f * joints + j];
+      low = std::min(low, now[1]);
+      still = std::min(still, std::hypot(now[0] - before[0], now[2] - before[2]));
+    }
+    CHECK(std::abs(low) < 1e-12);
+    CHECK(still < 1e-12);
+  }
+}
+
 TEST_CASE("a motion decoded in pieces is the one decoded at once, bit for bit") {
-  const Motion m = curved_walk(0.4, {3, 1, -2}, 500);
-  for (const RootRotation form : {velocity, RootRotation::heading}) {
+  const Motion m = curved_walk_on_legs(0.4, {3, 1, -2}, 500);
+  for (const RootRotation form : {velocity, RootRotation::support, RootRotation::heading}) {
     const PoseLayout layout(m.skeleton, true, 0, form);
     const std::vector<double> poses = layout.encode(m);
     const Motion whole = layout.decode(poses, m.frames, m.rate);
@@ -124,7 +185,8 @@ TEST_CASE("a motion decoded in pieces is the one decoded at once, bit for bit") 
       }
       CHECK(joined.rotations == whole.rotations);
       CHECK(joined.positions == whole.positions);
-      CHECK(track.started == (form == velocity));  // the other representation leaves it unchanged
+      CHECK(track.started ==
+            (form != RootRotation::heading));  // the other representation leaves it unchanged
     }
   }
 }
@@ -157,8 +219,9 @@ TEST_CASE("a data set with steps: windows, statistics, and conversion back to mo
   CHECK(!data.format.turning());
   const std::vector<double>&mean = data.format.normalizer.mean(), &std = data.format.normalizer.std();
   CHECK(mean[1] == doctest::Approx(0.18));  // two frames of 0.09
-  CHECK(mean[8] > 0.19);
-  CHECK(std[6] == std[8]);
+  const std::size_t place = data.format.layout.position_dim();
+  CHECK(mean[place + 2] > 0.19);
+  CHECK(std[place] == std[place + 2]);
   const std::size_t dof = data.format.dof();
   std::vector<float> window(8 * dof);
   for (const DatasetClip& clip : data.train) {
@@ -175,7 +238,8 @@ TEST_CASE("a data set with steps: windows, statistics, and conversion back to mo
 }
 
 TEST_CASE("the training range contains every training window, tightly") {
-  for (const RootRotation form : {RootRotation::expmap, RootRotation::heading, velocity}) {
+  for (const RootRotation form :
+       {RootRotation::expmap, RootRotation::heading, velocity, RootRotation::support}) {
     const Dataset data =
         Dataset::from_motions(curves(), {.frames = 8, .rate = 5, .root_rotation = form, .train_share = 0.67});
     const MotionFormat& format = data.format;
@@ -198,7 +262,8 @@ TEST_CASE("the training range contains every training window, tightly") {
 
 TEST_CASE("a prior is encoded as a window and placed back") {
   const std::vector<LabelledMotion> motions = curves();
-  for (const RootRotation form : {RootRotation::expmap, RootRotation::heading, velocity}) {
+  for (const RootRotation form :
+       {RootRotation::expmap, RootRotation::heading, velocity, RootRotation::support}) {
     const Dataset data =
         Dataset::from_motions(motions, {.frames = 8, .rate = 10, .root_rotation = form, .train_share = 1});
     const MotionFormat& format = data.format;
@@ -210,10 +275,10 @@ TEST_CASE("a prior is encoded as a window and placed back") {
     std::vector<float> window(8 * format.dof());
     data.window(data.train[1], start, window);
     REQUIRE(poses.size() == window.size());
-    for (std::size_t i = form == velocity ? format.dof() : 0; i < poses.size(); ++i)
+    for (std::size_t i = form >= velocity ? format.dof() : 0; i < poses.size(); ++i)
       CHECK(poses[i] == doctest::Approx(window[i]).epsilon(1e-4));
     // Of any length, anywhere.
-    const Motion other = curved_walk(-2, {-20, 1, 30}, 30);
+    const Motion other = curved_walk_on_legs(-2, {-20, 1, 30}, 30);
     const Motion made = format.to_motion(format.encode_window(other));
     const Motion placed = format.place(made, other);
     const Difference d = difference(placed, other);

@@ -52,7 +52,8 @@ bool same(const Motion& a, const Motion& b) {
   return a.frames == b.frames && a.rotations == b.rotations && a.positions == b.positions;
 }
 
-const RootRotation all_forms[] = {RootRotation::velocity, RootRotation::heading, RootRotation::expmap};
+const RootRotation all_forms[] = {RootRotation::velocity, RootRotation::support, RootRotation::heading,
+                                  RootRotation::expmap};
 
 }  // namespace
 

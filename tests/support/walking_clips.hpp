@@ -50,6 +50,27 @@ inline Motion curved_walk(double heading, const Vec3& place, std::size_t frames)
   return m;
 }
 
+/// The same with two legs that swing; which foot is the lower one changes.
+inline Motion curved_walk_on_legs(double heading, const Vec3& place, std::size_t frames) {
+  const Motion body = curved_walk(heading, place, frames);
+  Motion m;
+  m.skeleton = body.skeleton;
+  m.skeleton.joints.insert(m.skeleton.joints.end(), {{"LeftLeg", 0, {0.1, -0.1, 0}, {}, {}},
+                                                     {"LeftFoot", 2, {0, -0.9, 0.1}, {}, {}},
+                                                     {"RightLeg", 0, {-0.1, -0.1, 0}, {}, {}},
+                                                     {"RightFoot", 4, {0, -0.9, 0.1}, {}, {}}});
+  m.rate = body.rate;
+  m.frames = frames;
+  for (std::size_t f = 0; f < frames; ++f) {
+    const double swing = 0.5 * std::sin(0.7 * static_cast<double>(f));
+    m.rotations.insert(m.rotations.end(), {body.rotation(f, 0), body.rotation(f, 1), axis_rotation(0, swing),
+                                           Quat{}, axis_rotation(0, -swing), Quat{}});
+    m.positions.push_back(body.position(f, 0));
+    for (std::size_t j = 1; j < m.skeleton.size(); ++j) m.positions.push_back(m.skeleton.joints[j].offset);
+  }
+  return m;
+}
+
 inline std::vector<LabelledMotion> several(std::size_t count) {
   std::vector<LabelledMotion> out;
   for (std::size_t i = 0; i < count; ++i)

@@ -33,7 +33,7 @@ struct MotionFormat {
 
   /// Kept dimensions (indices 0 .. kept dof - 1) that are relative to the first frame of each window: the
   /// root's x, z (y is up) and yaw, so that it does not matter where a motion was recorded. Their mean is 0
-  /// and their deviation is the root mean square over windows. None with RootRotation::velocity.
+  /// and their deviation is the root mean square over windows. None with steps and turns.
   std::vector<std::size_t> relative_dims;
 
   /// Smallest and largest normalised value of each kept dimension over the training windows; empty if

@@ -69,10 +69,11 @@ inline motion::ClipSpace space_from_json(const nlohmann::json& json) {
   return out;
 }
 
-/// {"skeleton": HIERARCHY text, "root": joint name, "root_position", "root_rotation": "expmap", "heading" or
-/// "velocity", "rate", "frames", "mean": [full dof], "std": [full dof], "relative_dims": [...], "vocabulary":
-/// [words]} and, if known, the training range "low" and "high": [kept dof], and "unit_metres" and "clips_up".
-/// Every number round-trips exactly. Throws Error for an inconsistent format.
+/// {"skeleton": HIERARCHY text, "root": joint name, "root_position", "root_rotation": "expmap", "heading",
+/// "velocity" or "support", "rate", "frames", "mean": [full dof], "std": [full dof], "relative_dims": [...],
+/// "vocabulary": [words]}, with "support" "floor", and, if known, the training range "low" and "high": [kept
+/// dof], and "unit_metres" and "clips_up". Every number round-trips exactly. Throws Error for an inconsistent
+/// format.
 inline nlohmann::json to_json(const motion::MotionFormat& format) {
   format.check();
   nlohmann::json json;
@@ -87,6 +88,7 @@ inline nlohmann::json to_json(const motion::MotionFormat& format) {
   json["relative_dims"] = format.relative_dims;
   json["vocabulary"] = format.vocabulary.words();
   space_to_json(format.space, json);
+  if (format.layout.softness() > 0) json["floor"] = format.layout.floor();
   if (!format.low.empty()) {
     json["low"] = format.low;
     json["high"] = format.high;
@@ -106,10 +108,12 @@ inline motion::MotionFormat motion_format_from_json(const nlohmann::json& json) 
   const int root = skeleton.find(root_name);
   require(root >= 0, "the motion format's root '", root_name, "' is not a joint of its skeleton");
   const auto root_rotation = enum_from<motion::RootRotation>(
-      read<std::string>(json, "root_rotation", "\"expmap\", \"heading\" or \"velocity\""),
+      read<std::string>(json, "root_rotation", "\"expmap\", \"heading\", \"velocity\" or \"support\""),
       "the motion format's root_rotation");
   format.layout = motion::PoseLayout(std::move(skeleton), read<bool>(json, "root_position", "true or false"),
                                      static_cast<std::size_t>(root), root_rotation);
+  if (json.contains("floor"))
+    format.layout = format.layout.with_floor(read<double>(json, "floor", "a height in the clips' unit"));
   format.rate = read<double>(json, "rate", "frames per second");
   format.frames = read<std::size_t>(json, "frames", "a whole number, 1 or more");
   format.space = space_from_json(json);

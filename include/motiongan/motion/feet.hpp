@@ -130,4 +130,15 @@ inline double leg_length(const Skeleton& skeleton) {
   return feet_detail::leg_length_or_zero(skeleton, feet_detail::feet_by_name(skeleton));
 }
 
+/// The length that measures a body in the file's unit: its leg length or, without feet, half its longest
+/// chain of bones.
+inline double body_unit(const Skeleton& skeleton) {
+  if (const double leg = leg_length(skeleton); leg > 0) return leg;
+  std::vector<double> reach(skeleton.size(), 0);
+  for (std::size_t j = 0; j < skeleton.size(); ++j)
+    if (const int p = skeleton.joints[j].parent; p >= 0)
+      reach[j] = reach[static_cast<std::size_t>(p)] + length(skeleton.joints[j].offset);
+  return reach.empty() ? 0 : *std::max_element(reach.begin(), reach.end()) / 2;
+}
+
 }  // namespace motiongan::motion

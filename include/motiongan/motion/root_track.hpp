@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "motiongan/motion/heading.hpp"
 #include "motiongan/motion/skeleton.hpp"
@@ -18,6 +19,8 @@ struct RootTrack {
   double yaw = 0;       ///< radians
   bool started = false;
   double height = 0;  ///< the root's y, in the file's unit; used only by PositionLayout
+  /// joints_about_root() of the last frame; used only with RootRotation::support.
+  std::vector<Vec3> joints = {};
 };
 
 /// Rotates ground coordinates by `yaw` radians about y, as axis_rotation(1, yaw) rotates a vector.

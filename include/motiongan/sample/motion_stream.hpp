@@ -27,9 +27,9 @@ struct CharacterOptions {
   std::uint32_t sample = 0;  ///< selects the noise within a seed
   /// Motion to continue from its last frame, at any frame rate. Only read by add().
   const motion::Motion* prior = nullptr;
-  /// Start position and heading of a character without a prior. With RootRotation::velocity the first frame
-  /// is placed there; with the other forms, the origin of their root positions, which is close to the first
-  /// frame. RootRotation::expmap ignores the yaw.
+  /// Start position and heading of a character without a prior. With RootRotation::velocity and support the
+  /// first frame is placed there; with the other forms, the origin of their root positions, which is close to
+  /// the first frame. RootRotation::expmap ignores the yaw.
   motion::RootTrack at = {};
 };
 
@@ -38,9 +38,9 @@ struct CharacterOptions {
 /// that of Dvgan::generate for the same text, seed and sample. step() allocates nothing on the device once it
 /// has made that number of frames for that number of characters.
 ///
-/// Characters can run indefinitely. With RootRotation::velocity no value grows over time; with the other
-/// forms, position (and yaw) are relative to the start and leave the range of the training windows when a
-/// character walks far.
+/// Characters can run indefinitely. With RootRotation::velocity and support no value grows over time; with
+/// the other forms, position (and yaw) are relative to the start and leave the range of the training windows
+/// when a character walks far.
 ///
 ///     MotionStream stream(model);
 ///     const CharacterId id = stream.add({.text = "walk"});
@@ -50,14 +50,7 @@ struct CharacterOptions {
 class MotionStream {
  public:
   /// Throws Error for a model with a CNN generator. The weights are read at construction.
-  explicit MotionStream(const Dvgan& model) : format_(model.format()), stream_(model.rnn()) {
-    const motion::PoseLayout& layout = format_.layout;
-    if (!layout.has_steps()) return;
-    turn_ = number(layout.yaw_dim());
-    if (!layout.root_position()) return;
-    step_x_ = number(layout.position_dim());
-    step_z_ = number(layout.position_dim() + 2);
-  }
+  explicit MotionStream(const Dvgan& model) : format_(model.format()), stream_(model.rnn()) {}
   MotionStream(const MotionStream&) = delete;
   MotionStream& operator=(const MotionStream&) = delete;
 
@@ -131,8 +124,11 @@ class MotionStream {
       Character& c = characters_.at(stream_.id_of(row));
       c.row = row;
       c.track = c.next_track;
-      if (format_.layout.has_steps())
-        for (std::size_t f = 0; f < frames; ++f) follow(c.next_track, &poses_[(row * frames + f) * dof]);
+      if (!format_.layout.has_steps()) continue;
+      const std::vector<double> made_poses = format_.normalizer.denormalize(row_poses(row));
+      const motion::PoseLayout& layout = layout_of(c);
+      for (std::size_t f = 0; f < frames; ++f)
+        layout.follow(std::span(made_poses).subspan(f * layout.dof(), layout.dof()), c.next_track);
     }
   }
 
@@ -140,13 +136,12 @@ class MotionStream {
   motion::Motion motion(CharacterId id) const {
     const Character& c = character(id);
     motion::RootTrack track = c.track;
-    motion::Motion made = format_.to_motion(poses(id), &track);
-    const std::size_t root = format_.layout.root(), joints = made.skeleton.size();
+    const std::vector<double> poses = format_.normalizer.denormalize(this->poses(id));
+    motion::Motion made = layout_of(c).decode(poses, frames_, rate(), &track);
+    const std::size_t root = format_.layout.root();
     const bool moves = format_.layout.root_position();
     if (c.body) made.skeleton = c.body->skeleton;
     for (std::size_t f = 0; f < made.frames; ++f) {
-      for (std::size_t j = 0; c.body && j < joints; ++j)
-        if (j != root || !moves) made.position(f, j) = c.body->positions[j];
       if (moves || !c.body) c.origin.place(made.position(f, root));
       if (c.origin.turn != 0)
         made.rotation(f, root) = multiply(motion::axis_rotation(1, c.origin.turn), made.rotation(f, root));
@@ -158,8 +153,7 @@ class MotionStream {
   std::span<const float> poses(CharacterId id) const {
     const Character& c = character(id);
     require(c.row.has_value(), "character ", id, " has not moved since it was added; call step()");
-    const std::size_t size = frames_ * format_.dof();
-    return {poses_.data() + *c.row * size, size};
+    return row_poses(*c.row);
   }
 
  private:
@@ -176,11 +170,11 @@ class MotionStream {
     }
   };
 
-  /// The skeleton of a prior and its joint positions in the last frame, kept by joints that poses do not
-  /// move.
+  /// The skeleton of a prior. `layout` has its joint positions in the last frame as offsets: joints that
+  /// poses do not move keep them.
   struct Body {
     motion::Skeleton skeleton;
-    std::vector<motion::Vec3> positions;  // [joints]
+    motion::PoseLayout layout;
   };
 
   struct Character {
@@ -195,13 +189,6 @@ class MotionStream {
     std::shared_ptr<const std::vector<float>> poses;  // of the prior, [frames, dof]
     Character character;
     StreamStart start;
-  };
-
-  /// One value of a pose, de-normalised: read from the pose, or the mean if the dimension was dropped.
-  struct Number {
-    std::optional<std::size_t> kept;
-    double mean = 0, std = 0;
-    double of(const float* pose) const { return kept ? mean + std * static_cast<double>(pose[*kept]) : mean; }
   };
 
   const Character& character(CharacterId id) const {
@@ -228,11 +215,9 @@ class MotionStream {
     for (std::size_t i = 0; i < poses.size(); ++i)
       require(std::isfinite(poses[i]), "frame ", i / format_.dof(),
               " of the prior has a value that is not finite");
-    const auto end = static_cast<std::ptrdiff_t>(prior.positions.size());
-    c.body = std::make_shared<const Body>(
-        Body{prior.skeleton,
-             {prior.positions.begin() + end - static_cast<std::ptrdiff_t>(prior.skeleton.size()),
-              prior.positions.end()}});
+    motion::Skeleton held = prior.skeleton;
+    for (std::size_t j = 0; j < held.size(); ++j) held.joints[j].offset = prior.position(prior.frames - 1, j);
+    c.body = std::make_shared<const Body>(Body{prior.skeleton, layout.of_body(std::move(held))});
     if (layout.has_steps()) {
       c.next_track = layout.track_of(prior, prior.frames - 1);
     } else {
@@ -260,24 +245,18 @@ class MotionStream {
     return stream_.add(starts, priors, frames);
   }
 
-  /// A pose's value by its dimension in the layout.
-  Number number(std::size_t dim) const {
-    const motion::Normalizer& n = format_.normalizer;
-    const auto found = std::lower_bound(n.kept().begin(), n.kept().end(), dim);
-    Number out{std::nullopt, n.mean()[dim], n.std()[dim]};
-    if (found != n.kept().end() && *found == dim)
-      out.kept = static_cast<std::size_t>(found - n.kept().begin());
-    return out;
+  /// The poses of a row of the last step, [frames, dof].
+  std::span<const float> row_poses(std::size_t row) const {
+    const std::size_t size = frames_ * format_.dof();
+    return {poses_.data() + row * size, size};
   }
 
-  /// Advances the track by one pose.
-  void follow(motion::RootTrack& track, const float* pose) const {
-    motion::advance(track, step_x_.of(pose), step_z_.of(pose), turn_.of(pose));
+  const motion::PoseLayout& layout_of(const Character& c) const {
+    return c.body ? c.body->layout : format_.layout;
   }
 
   motion::MotionFormat format_;
   RnnStream stream_;
-  Number step_x_, step_z_, turn_;  // with RootRotation::velocity
   std::map<CharacterId, Character> characters_;
   std::size_t frames_ = 0;
   std::vector<float> poses_;  // of the last step, [characters, frames, dof]
