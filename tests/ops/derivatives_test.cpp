@@ -3,6 +3,7 @@
 
 #include <motiongan/ops/conv1d.hpp>
 #include <motiongan/ops/cross_entropy.hpp>
+#include <motiongan/ops/forward_kinematics.hpp>
 #include <motiongan/ops/lstm.hpp>
 
 #include "../support/check_grads.hpp"
@@ -41,6 +42,8 @@ TEST_CASE("elementwise operations") {
   check("sqrt", [](auto& v) { return sqrt(v[0]); }, {positive({3, 7})});
   check("relu", [](auto& v) { return square(relu(v[0])) * v[1]; }, {kinked, y});
   check("leaky_relu", [](auto& v) { return square(leaky_relu(v[0], 0.2)) * v[1]; }, {kinked, y});
+  check("sin", [](auto& v) { return sin(v[0]); }, {x});
+  check("cos", [](auto& v) { return cos(v[0]); }, {x});
   check("mixed", [](auto& v) { return tanh(v[0] * v[1]) * exp(v[1]) + sigmoid(v[0]); }, {x, y});
 }
 
@@ -159,4 +162,23 @@ TEST_CASE("LSTM layer: fused first derivative, composed higher ones, sequence le
     for (std::size_t i = 0; i < fused.size(); ++i)
       CHECK(fused[i] == doctest::Approx(composed[i]).epsilon(1e-13));
   }
+}
+
+TEST_CASE("forward kinematics") {
+  motion::Skeleton body;
+  body.joints = {{"Reference", -1, {1, 2, 3}, {}, {}},   {"Hips", 0, {4, 5, 6}, {}, {}},
+                 {"Spine", 1, {0.1, 0.8, -0.2}, {}, {}}, {"Leg", 1, {0.3, -0.5, 0.1}, {}, {}},
+                 {"Foot", 3, {0, -0.7, 0.4}, {}, {}},    {"Toe", 4, {0, -0.1, 0.3}, {}, {}}};
+  const JointTree tree(double_context(), body, 1);
+  CHECK(tree.parent == std::vector<cl_int>{-1, -1, 1, 1, 3, 4});
+  const auto positions = [&](auto& v) { return forward_kinematics(v[0], tree); };
+  for (const std::size_t poses : {1, 3, 9}) check("large turns", positions, {randn({18, poses})}, 2);
+  check("three orders", positions, {randn({18, 2})});
+  Input small = randn({18, 5});
+  for (double& v : small.values) v *= 0.02;  // the series of the derivatives
+  check("small turns", positions, {small});
+  check(
+      "no turn", [&](auto& v) { return forward_kinematics(1e-3 * v[0], tree); }, {randn({18, 2})}, 2);
+  CHECK_THROWS_WITH_AS(forward_kinematics(Var::constant(Tensor(double_context(), {15, 2})), tree),
+                       "forward_kinematics: rotations [15, 2], expected [18, poses]", Error);
 }
