@@ -18,7 +18,7 @@ void add_clip_options(CLI::App& verb, CaptionedDataArgs& a, const char* folder) 
 }
 
 void print_captions(const motion::Dataset& data, const CaptionedDataArgs& args) {
-  const std::size_t used = data.train.size() + data.test.size();
+  const std::size_t used = data.recorded() + data.test.size();
   const bool from_file = !args.data.captions.empty();
   if (args.procedural > 0 && !from_file)
     print_fact("captions", "those of the built-in motion");
@@ -100,7 +100,9 @@ void print_data(const motion::Dataset& data, const CaptionedDataArgs& args) {
     return n;
   };
   std::string clips =
-      fmt::format("{} for training, {} held out for testing", data.train.size(), data.test.size());
+      fmt::format("{} for training, {} held out for testing", data.recorded(), data.test.size());
+  if (const std::size_t derived = data.train.size() - data.recorded(); derived > 0)
+    clips += fmt::format("; {} derived from those for training", derived);
   if (!data.skipped.empty())
     clips += fmt::format("; {} left out, shorter than {}", data.skipped.size(), duration(window));
   if (!data.bad.empty()) clips += fmt::format("; {} that cannot be read", data.bad.size());

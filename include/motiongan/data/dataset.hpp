@@ -24,6 +24,7 @@ struct DatasetClip {
   std::vector<std::vector<int>> sentences;  ///< the captions as word indices of the vocabulary
   std::size_t frames = 0;
   std::vector<float> poses;  ///< [frames, kept dof]
+  bool derived = false;      ///< mirrored or stretched from another training clip
 };
 
 /// A clip that was left out.
@@ -39,14 +40,14 @@ struct SkippedClip {
 /// when a window is drawn: value[start + i * stride] - value[start]. If the layout has a yaw, x and z are
 /// then rotated back by the yaw of the window's first frame: every window starts at the origin facing the
 /// same way, wherever it was recorded. All other dimensions are normalised by mean and deviation over all
-/// frames of the training clips. With RootRotation::velocity nothing is relative: steps and turns are
+/// frames of the training clips. With steps and turns nothing is relative: steps and turns are
 /// differences over `stride` frames of the clip, the distance between a window's frames; those of a window's
 /// first frame lead to it from the frame before the window.
 class Dataset {
  public:
   MotionFormat format;  ///< skeleton of the first clip used, statistics and vocabulary of the training clips
   DatasetOptions options;
-  std::vector<DatasetClip> train;  ///< in the order of their ids
+  std::vector<DatasetClip> train;  ///< in the order of their ids, then those derived from them
   std::vector<DatasetClip> test;
   std::vector<SkippedClip> skipped;          ///< clips that are too short
   std::vector<SkippedClip> bad;              ///< files that could not be read, with clips.skip_bad
@@ -102,11 +103,18 @@ class Dataset {
     return format.to_motion(normalised_window);
   }
 
+  /// Number of training clips that are not derived from others.
+  std::size_t recorded() const {
+    return static_cast<std::size_t>(
+        std::count_if(train.begin(), train.end(), [](const DatasetClip& clip) { return !clip.derived; }));
+  }
+
   /// Writes the split, one clip per line: `train <TAB> id` or `test <TAB> id`.
   void write_split(const std::filesystem::path& path) const {
-    std::string text = concat("# split of ", train.size() + test.size(), " clips, seed ", options.split_seed,
+    std::string text = concat("# split of ", recorded() + test.size(), " clips, seed ", options.split_seed,
                               ", training share ", options.train_share, "\n");
-    for (const DatasetClip& clip : train) text += "train\t" + clip.id + "\n";
+    for (const DatasetClip& clip : train)
+      if (!clip.derived) text += "train\t" + clip.id + "\n";
     for (const DatasetClip& clip : test) text += "test\t" + clip.id + "\n";
     write_text_atomically(path, text);
   }

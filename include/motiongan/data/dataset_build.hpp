@@ -18,8 +18,10 @@
 #include "motiongan/data/captions.hpp"
 #include "motiongan/data/clip_agreement.hpp"
 #include "motiongan/data/dataset.hpp"
+#include "motiongan/data/mirror.hpp"
 #include "motiongan/data/split.hpp"
 #include "motiongan/formats/bvh_reader.hpp"
+#include "motiongan/motion/percentile.hpp"
 
 namespace motiongan::motion {
 
@@ -35,6 +37,11 @@ inline std::string two_decimals(double value) {
 struct Used {
   std::size_t source = 0;
   EncodedClip clip;
+  LoadChange change{};
+  double speed = 1;       ///< relative to the source
+  bool mirrored = false;  ///< left and right exchanged
+
+  bool derived() const { return mirrored || speed != 1; }
 };
 
 /// The clips that a data set can use: readable, long enough, and of the skeleton that the options name.
@@ -59,7 +66,7 @@ inline std::vector<Used> choose_clips(const std::vector<ClipSource>& sources, st
     if (longest == clips.size() || clips[i].seconds() > clips[longest].seconds()) longest = i;
     const std::size_t reach = (o.frames - 1) * clips[i].stride;
     if (clips[i].frames > reach) {
-      used.push_back({i, std::move(clips[i])});
+      used.push_back({.source = i, .clip = std::move(clips[i])});
     } else {
       data.skipped.push_back(
           {sources[i].id,
@@ -104,6 +111,7 @@ inline std::vector<Used> encode_all(const std::vector<ClipSource>& sources, Data
   require_all_read(errors, o.clips.skip_bad);
   std::vector<Used> used = choose_clips(sources, clips, errors, data);
   const std::vector<LoadChange> changes = agree(sources, used, data);
+  for (std::size_t i = 0; i < used.size(); ++i) used[i].change = changes[i];
 
   data.stride = used.front().clip.stride;
   root = 0;
@@ -113,11 +121,12 @@ inline std::vector<Used> encode_all(const std::vector<ClipSource>& sources, Data
   }
   in_two_threads(used.size(), [&](std::size_t i) {
     EncodedClip& clip = used[i].clip;
-    if (clip.stride == data.stride && !changes[i].up && changes[i].scale == 1 &&
+    const LoadChange& change = used[i].change;
+    if (clip.stride == data.stride && !change.up && change.scale == 1 &&
         (clip.root == root || (!o.root_position && o.rotation() == RootRotation::expmap)))
       return;
     const ClipSource& source = sources[used[i].source];
-    clip = encode_clip(source.load(changes[i]), o, data.stride, root, source.id);
+    clip = encode_clip(source.load(change), o, data.stride, root, source.id);
   });
   // Resampling rounds a clip's length down to whole frames, which may cost it its only window.
   std::erase_if(used, [&](const Used& u) {
@@ -192,6 +201,57 @@ inline std::vector<bool> split_by_whole(const std::vector<Used>& used, const std
   std::vector<bool> out;
   for (const std::size_t number : number_of) out.push_back(split[number]);
   return out;
+}
+
+/// Appends the clips that the options derive from the training clips: slower and faster, then all of these
+/// mirrored. Faster clips that are too short for a window are left out.
+inline void derive_clips(std::vector<Used>& used, std::vector<bool>& is_train, const PoseLayout& layout,
+                         const std::vector<ClipSource>& sources, const Dataset& data) {
+  const DatasetOptions& o = data.options;
+  require(o.stretch >= 0 && o.stretch <= 0.5, "stretch is ", o.stretch, ", expected 0 to 0.5");
+  std::vector<Used> derived;
+  for (std::size_t i = 0; i < used.size() && o.stretch > 0; ++i)
+    for (const double speed : {1 - o.stretch, 1 + o.stretch})
+      if (is_train[i])
+        derived.push_back({.source = used[i].source, .clip = {}, .change = used[i].change, .speed = speed});
+  in_two_threads(derived.size(), [&](std::size_t i) {
+    const ClipSource& source = sources[derived[i].source];
+    LoadedMotion loaded = source.load(derived[i].change);
+    loaded.motion.rate *= derived[i].speed;
+    derived[i].clip =
+        encode_clip(std::move(loaded), o, data.stride, static_cast<int>(layout.root()), source.id);
+  });
+  std::erase_if(derived, [&](const Used& u) { return u.clip.frames <= (o.frames - 1) * data.stride; });
+  if (o.mirror) {
+    const PoseMirror mirror(layout);
+    const auto image = [&](const Used& of) {
+      Used out = of;
+      out.clip.poses = mirror(of.clip.poses);
+      out.mirrored = true;
+      return out;
+    };
+    const std::size_t stretched = derived.size();
+    for (std::size_t i = 0; i < used.size(); ++i)
+      if (is_train[i]) derived.push_back(image(used[i]));
+    for (std::size_t i = 0; i < stretched; ++i) derived.push_back(image(derived[i]));
+  }
+  is_train.resize(used.size() + derived.size(), true);
+  for (Used& u : derived) used.push_back(std::move(u));
+}
+
+/// Gives a layout with a support its floor, the median height of the lowest joint over the training clips,
+/// and changes the clips' poses accordingly.
+inline void find_floor(std::vector<Used>& used, const std::vector<bool>& is_train, PoseLayout& layout) {
+  if (!layout.has_support() || !layout.root_position()) return;
+  const std::size_t dof = layout.dof(), at = layout.position_dim() + 1;
+  std::vector<double> heights;
+  for (std::size_t c = 0; c < used.size(); ++c)
+    for (std::size_t f = 0; is_train[c] && f < used[c].clip.frames; ++f)
+      heights.push_back(used[c].clip.poses[f * dof + at]);
+  layout = layout.with_floor(percentile(std::move(heights), 0.5));
+  for (Used& u : used)
+    for (std::size_t f = 0; f < u.clip.frames; ++f)
+      u.clip.poses[f * dof + at] = layout.lowered(u.clip.poses[f * dof + at]);
 }
 
 /// Mean and deviation over the training clips; for the root's x, z and yaw, unless they are steps and turns,
@@ -289,7 +349,7 @@ inline Dataset build(const std::vector<ClipSource>& sources, const DatasetOption
   int root = 0;
   std::vector<Used> used = encode_all(sources, data, root);
   drop_described_in_parts(used, sources, data);
-  const std::vector<bool> is_train = split_by_whole(used, sources, options);
+  std::vector<bool> is_train = split_by_whole(used, sources, options);
 
   MotionFormat& format = data.format;
   format.layout = PoseLayout(common_skeleton(used), options.root_position, static_cast<std::size_t>(root),
@@ -297,6 +357,8 @@ inline Dataset build(const std::vector<ClipSource>& sources, const DatasetOption
   for (const Joint& joint : format.skeleton().joints)
     require(is_utf8(joint.name), "clip '", sources[used.front().source].id, "' has a joint called '",
             joint.name, "', which is not UTF-8; a model file cannot hold it: rename the joint");
+  derive_clips(used, is_train, format.layout, sources, data);
+  find_floor(used, is_train, format.layout);
   format.rate = options.rate;
   format.frames = options.frames;
   format.normalizer = fit_normalizer(used, is_train, format.layout, options.frames, data.stride);
@@ -311,10 +373,20 @@ inline Dataset build(const std::vector<ClipSource>& sources, const DatasetOption
   format.check();  // before normalising: throws if nothing moves
 
   std::vector<std::string> training_captions;
+  std::map<std::size_t, std::vector<std::string>> captions;  // by source
   for (std::size_t c = 0; c < used.size(); ++c) {
     DatasetClip clip;
     clip.id = sources[used[c].source].id;
-    clip.captions = captions_of(sources[used[c].source], data);
+    if (!used[c].derived()) {
+      clip.captions = captions_of(sources[used[c].source], data);
+      captions.emplace(used[c].source, clip.captions);
+    } else {
+      clip.derived = true;
+      if (used[c].speed != 1) clip.id += used[c].speed < 1 ? " slower" : " faster";
+      if (used[c].mirrored) clip.id += " mirrored";
+      for (const std::string& caption : captions.at(used[c].source))
+        clip.captions.push_back(used[c].mirrored ? mirrored_caption(caption) : caption);
+    }
     clip.frames = used[c].clip.frames;
     clip.poses = format.normalizer.normalize<float>(used[c].clip.poses);
     if (is_train[c])

@@ -21,7 +21,10 @@ struct DatasetOptions {
   std::optional<RootRotation> root_rotation = {};
   double train_share = 0.67;  ///< fraction of the clips; the rest is for testing
   std::uint64_t split_seed = 1;
-  ClipOptions clips{};  ///< how the files are read
+  bool mirror = false;    ///< train on the mirror image of every training clip too
+  double stretch = 0;     ///< above 0: train on every training clip also 1 + stretch and 1 - stretch as fast
+  bool balanced = false;  ///< draw every description equally often, instead of every clip
+  ClipOptions clips{};    ///< how the files are read
 
   RootRotation rotation() const { return root_rotation.value_or(RootRotation::heading); }
 
@@ -39,13 +42,25 @@ struct DatasetOptions {
              {.key = "root_position", .help = "learn the position of the root, not only its rotation"});
     list.add(root_rotation, {.key = "root_rotation",
                              .help = "heading: position and yaw, every motion starts facing the same way; "
-                                     "velocity: steps and turns, for motion of any length; expmap: as the "
-                                     "papers; auto: velocity for an RNN generator, else heading"});
+                                     "velocity: steps and turns, for motion of any length; support: as "
+                                     "velocity, of the joint that bears the body, so that feet stand; "
+                                     "expmap: as the papers; auto: velocity for an RNN generator, else "
+                                     "heading"});
     clips.list_fields(list);
     list.add(train_share, {.key = "train_share",
                            .help = "fraction of the clips to train on; the rest is held out for testing",
                            .range = Range::between(0, 1)});
     list.add(split_seed, {.key = "split_seed", .help = "seed of that split"});
+    list.add(mirror, {.key = "mirror",
+                      .help = "train on the mirror images of the clips too, with left and right exchanged "
+                              "in their captions"});
+    list.add(stretch, {.key = "stretch",
+                       .help = "train on the clips also this much faster and slower; 0.1: by a tenth; 0: not",
+                       .range = Range::between(0, 0.5),
+                       .type = "SHARE"});
+    list.add(balanced, {.key = "balanced",
+                        .help = "draw every description equally often, instead of every clip",
+                        .option = "--balance"});
   }
 };
 

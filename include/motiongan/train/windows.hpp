@@ -14,8 +14,9 @@ struct CaptionedBatch {
   std::vector<std::size_t> clips;  ///< [B], the training clip of each window
 };
 
-/// Draws windows from the training clips, which are kept in one device buffer. A batch depends only on
-/// (seed, step), so a resumed run draws the same batches as an uninterrupted one.
+/// Draws windows from the training clips, or with DatasetOptions::balanced from their descriptions, which are
+/// kept in one device buffer. A batch depends only on (seed, step), so a resumed run draws the same batches
+/// as an uninterrupted one.
 class WindowSampler {
  public:
   /// Throws Error if the data set has no training clips.
@@ -30,6 +31,12 @@ class WindowSampler {
       clips_.push_back({data.starts(clip), clip.sentences});
       poses.emplace_back(clip.poses);
     }
+    if (data.options.balanced) {
+      std::map<std::vector<int>, std::vector<std::size_t>> clips_of;
+      for (std::size_t c = 0; c < clips_.size(); ++c)
+        for (const std::vector<int>& sentence : clips_[c].sentences) clips_of[sentence].push_back(c);
+      for (auto& [sentence, clips] : clips_of) described_.push_back({sentence, std::move(clips)});
+    }
     const std::size_t dof = data.format.dof();
     WindowForm form{.x = dof, .z = dof, .yaw = dof};
     for (const bool is_relative : data.format.relative_mask()) form.relative.push_back(is_relative);
@@ -38,7 +45,8 @@ class WindowSampler {
     buffer_ = ClipBuffer(context, dof, poses, std::move(form));
   }
 
-  /// Draws `size` windows: for each a clip, one of its captions and a start frame, all uniform.
+  /// Draws `size` windows: for each a clip, one of its captions and a start frame, all uniform. Balanced: a
+  /// description, one of its clips and a start frame.
   CaptionedBatch draw(std::uint64_t seed, std::uint32_t step, std::size_t size) const {
     const RandomKey windows{.seed = seed, .stream = RandomStream::windows, .step = step},
         captions = windows.with(RandomStream::captions);
@@ -46,10 +54,16 @@ class WindowSampler {
     std::vector<std::vector<int>> sentences;
     std::vector<std::size_t> drawn;
     for (std::uint32_t b = 0; b < size; ++b) {
-      drawn.push_back(random_below(windows, b, clips_.size()));
-      const Clip& clip = clips_[drawn.back()];
-      rows.push_back(buffer_.row(drawn.back(), random_below(windows, b, clip.starts, 1)));
-      sentences.push_back(clip.sentences[random_below(captions, b, clip.sentences.size())]);
+      if (described_.empty()) {
+        drawn.push_back(random_below(windows, b, clips_.size()));
+        const auto& known = clips_[drawn.back()].sentences;
+        sentences.push_back(known[random_below(captions, b, known.size())]);
+      } else {
+        const Description& one = described_[random_below(captions, b, described_.size())];
+        drawn.push_back(one.clips[random_below(windows, b, one.clips.size())]);
+        sentences.push_back(one.sentence);
+      }
+      rows.push_back(buffer_.row(drawn.back(), random_below(windows, b, clips_[drawn.back()].starts, 1)));
     }
     return {buffer_.gather(rows, frames_, stride_), Sentences(context_, sentences, vocabulary_),
             std::move(drawn)};
@@ -60,10 +74,15 @@ class WindowSampler {
     std::size_t starts;
     std::vector<std::vector<int>> sentences;
   };
+  struct Description {
+    std::vector<int> sentence;
+    std::vector<std::size_t> clips;
+  };
 
   Context context_;
   std::size_t frames_, stride_, vocabulary_;
   std::vector<Clip> clips_;
+  std::vector<Description> described_;  // if the data set is balanced
   ClipBuffer buffer_;
 };
 
