@@ -22,6 +22,7 @@ struct RankerArgs : CaptionedDataArgs {
 inline void fill_in_choices(RankerArgs& a) {
   fill_in_data(a, motion::RootRotation::heading);
   a.model.seed = a.training.seed;
+  a.training.adam.schedule.fix(a.training.iterations);
   if (a.model.kind == RankerKind::cnn)
     levels_of(a.data.frames);
   else

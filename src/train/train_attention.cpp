@@ -82,6 +82,7 @@ int train_attention(AttentionArgs args, const CLI::App& verb) {
   fill_in_choices(args.data);
   args.model.seed = args.training.seed;
   if (args.model.generator == ActionGenerator::lstm) check_baseline(args, verb);
+  args.training.adam.schedule.fix(args.training.iterations);
   if (is_done(start, args.run, args.training.iterations)) return 0;
   if (!args.run.dry_run) make_folder(start.folder);
 

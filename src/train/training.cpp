@@ -8,6 +8,7 @@ void fill_in_choices(DvganArgs& a) {
   fill_in_data(a, recurrent ? motion::RootRotation::velocity : motion::RootRotation::heading);
   a.model.final_cut = a.model.cuts();
   a.model.seed = a.training.seed;
+  a.training.adam.schedule.fix(a.training.iterations);
   require(a.training.completion_share == 0 || recurrent,
           "--completions needs --generator rnn: the CNN generator cannot complete a motion");
   if (!recurrent || a.training.critic.critic == CriticKind::cnn)

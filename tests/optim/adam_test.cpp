@@ -44,6 +44,34 @@ std::vector<double> gradients_of(std::size_t n, std::size_t t) {
 
 }  // namespace
 
+TEST_CASE("a schedule lowers the rate to a hundredth, linearly or along a cosine") {
+  ScheduleOptions s;
+  CHECK(s.factor(50, 100) == 1);
+  s.shape = LearningSchedule::linear;
+  CHECK(s.factor(0, 100) == 1);
+  CHECK(s.factor(50, 100) == doctest::Approx(0.505));
+  CHECK(s.factor(100, 100) == doctest::Approx(0.01));
+  s.fix(200);
+  s.fix(1000);  // a longer training does not move the end
+  CHECK(s.factor(100, 1000) == doctest::Approx(0.505));
+  CHECK(s.factor(900, 1000) == doctest::Approx(0.01));
+  s.shape = LearningSchedule::cosine;
+  CHECK(s.factor(50, 0) == doctest::Approx(0.01 + 0.99 * (1 + std::sqrt(0.5)) / 2));
+}
+
+TEST_CASE("the rate factor scales a step") {
+  const Context context({.precision = Precision::f64});
+  double moved[2];
+  for (const double factor : {1.0, 0.25}) {
+    Var p = Var::leaf(Tensor::from(context, {1}, std::vector<double>{3}));
+    Adam adam({{"p", &p}}, {});
+    adam.set_rate_factor(factor);
+    adam.step({Var::constant(Tensor::from(context, {1}, std::vector<double>{0.7}))});
+    moved[factor == 1 ? 0 : 1] = p.value().to_host<double>()[0] - 3;
+  }
+  CHECK(moved[1] == doctest::Approx(0.25 * moved[0]));
+}
+
 TEST_CASE("five steps in double equal the formula to rounding, whatever the number of parameters") {
   const Context context({.precision = Precision::f64});
   for (const AdamOptions& options :

@@ -4,12 +4,14 @@
 
 #include "motiongan/core/fields.hpp"
 #include "motiongan/optim/optimizer.hpp"
+#include "motiongan/optim/schedule.hpp"
 
 namespace motiongan {
 
 /// The defaults are those of WGAN-GP training, see docs/training.md.
 struct AdamOptions {
   double learning_rate = 1e-4, beta1 = 0.5, beta2 = 0.9, epsilon = 1e-8;
+  ScheduleOptions schedule{};  ///< applied by the trainers
 
   void list_fields(FieldList& list) {
     list.add(learning_rate, {.key = "learning_rate", .help = "Adam's step size", .range = Range::above(0)});
@@ -20,6 +22,7 @@ struct AdamOptions {
                      .help = "Adam's decay rate of the mean of squared gradients",
                      .range = Range::between(0, 0.9999999)});
     list.add(epsilon, {.key = "epsilon", .help = "added to Adam's denominator", .range = Range::at_least(0)});
+    schedule.list_fields(list);
   }
 };
 
@@ -59,7 +62,7 @@ class Adam : public Optimizer {
  private:
   void update() override {
     const double t = static_cast<double>(steps());
-    const double step_size = options_.learning_rate / (1 - std::pow(options_.beta1, t)),
+    const double step_size = rate_factor() * options_.learning_rate / (1 - std::pow(options_.beta1, t)),
                  root = std::sqrt(1 - std::pow(options_.beta2, t));
     context().launch("adam", "adam", detail::vector_grid(values()), values(), gradients(), mean_, square_,
                      values().size(), KernelReal{options_.beta1}, KernelReal{options_.beta2},

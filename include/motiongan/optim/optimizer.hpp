@@ -27,6 +27,8 @@ class Optimizer {
   const Tensor& values() const { return values_; }
   std::size_t steps() const { return steps_; }
   void set_steps(std::size_t steps) { steps_ = steps; }
+  /// The next steps are made with this share of the learning rate, 1 at first. Not part of the state.
+  void set_rate_factor(double factor) { rate_factor_ = factor; }
 
   /// One update; `gradients` in the order of parameters(). Throws Error if their number or a shape does not
   /// match; then no parameter has changed.
@@ -82,6 +84,7 @@ class Optimizer {
   /// Updates values() from gradients(); steps() already counts this step.
   virtual void update() = 0;
 
+  double rate_factor() const { return rate_factor_; }
   const Tensor& gradients() const { return gradients_; }  // in the order of values(), [n]
   const Context& context() const { return values_.context(); }
 
@@ -90,6 +93,7 @@ class Optimizer {
   std::vector<Var> parameters_;
   Tensor values_, gradients_;
   std::size_t steps_ = 0;
+  double rate_factor_ = 1;
 };
 
 }  // namespace motiongan

@@ -59,7 +59,8 @@ class Sgd : public Optimizer {
       square = detail::sum_axis_value(chunks_, 1, chunks_.size(), 1, 1, {1});
     }
     context().launch("sgd", "sgd", detail::vector_grid(values()), values(), gradients(), square,
-                     values().size(), KernelReal{rate(steps() - 1)}, KernelReal{options_.clip_norm});
+                     values().size(), KernelReal{rate_factor() * rate(steps() - 1)},
+                     KernelReal{options_.clip_norm});
   }
 
   SgdOptions options_;

@@ -142,6 +142,7 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
 
   /// One iteration: critic_steps critic steps, one classifier step, generator_steps generator steps.
   void iterate() override {
+    follow_schedule(options_.adam.schedule);
     const KeepPacked weights_packed;
     auto step = static_cast<std::uint32_t>(iteration_ * options_.steps());
     for (std::size_t i = 0; i < options_.critic_steps; ++i) critic_step(step++);

@@ -54,6 +54,7 @@ class BaselineTrainer : public ModelTrainer<ActionGan, BaselineTrainOptions, Bas
 
   /// One update.
   void iterate() override {
+    follow_schedule(options_.adam.schedule);
     const KeepPacked weights_packed;
     const ActionBatch batch =
         windows_.draw(options_.seed, static_cast<std::uint32_t>(iteration_), options_.batch);

@@ -81,6 +81,7 @@ class PredictionTrainer : public ModelTrainer<PredictionModel, PredictionTrainOp
 
   /// One update.
   void iterate() override {
+    follow_schedule(options_.adam.schedule);
     const KeepPacked weights_packed;
     const auto step = static_cast<std::uint32_t>(iteration_);
     const PredictionBatch batch = windows_.draw(options_.seed, step, options_.batch);

@@ -84,6 +84,7 @@ class RankerTrainer : public ModelTrainer<Ranker, RankerTrainOptions, RankerLoss
 
   /// One update.
   void iterate() override {
+    follow_schedule(options_.adam.schedule);
     const KeepPacked weights_packed;
     const auto step = static_cast<std::uint32_t>(iteration_);
     const CaptionedBatch batch = windows_.draw(options_.seed, step, options_.batch);

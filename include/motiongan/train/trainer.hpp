@@ -11,6 +11,7 @@
 #include "motiongan/data/position_format.hpp"
 #include "motiongan/models/model_file.hpp"
 #include "motiongan/optim/optimizer.hpp"
+#include "motiongan/optim/schedule.hpp"
 #include "motiongan/optim/weight_mean.hpp"
 
 namespace motiongan {
@@ -82,6 +83,13 @@ class Trainer {
  protected:
   /// Throws Error as check_iterations().
   Trainer(std::size_t iterations, std::size_t steps) { check_iterations(iterations, steps); }
+
+  /// Sets the learning rates for the next iteration.
+  void follow_schedule(const ScheduleOptions& schedule) {
+    if (schedule.shape == LearningSchedule::constant) return;
+    for (const TrainedPart& part : parts())
+      part.optimizer->set_rate_factor(schedule.factor(iteration_, iterations()));
+  }
 
   std::size_t iteration_ = 0;
 };
