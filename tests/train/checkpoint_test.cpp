@@ -15,7 +15,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const DvganTrainOptions small_options{.iterations = 6, .critic_steps = 2, .batch = 3};
+// With what a resumed run has to compute again: the schedule's rate, the critic's view, the losses' floor.
+const DvganTrainOptions small_options{.iterations = 6,
+                                      .critic_steps = 2,
+                                      .batch = 3,
+                                      .adam = {.schedule = {.shape = LearningSchedule::cosine}},
+                                      .critic = {.sees = CriticSees::both},
+                                      .body = {.smooth = 0.5}};
 
 struct Run {
   Context context;

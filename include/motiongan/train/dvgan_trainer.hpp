@@ -1,6 +1,7 @@
 // Training of DVGAN (Lin & Amer, section 5.2). Nothing is read back from the device between steps.
 #pragma once
 #include "motiongan/models/dvgan.hpp"
+#include "motiongan/networks/body_losses.hpp"
 #include "motiongan/networks/dvgan_critic.hpp"
 #include "motiongan/optim/adam.hpp"
 #include "motiongan/train/run.hpp"
@@ -18,6 +19,7 @@ struct DvganTrainOptions {
   AdamOptions adam{};       ///< used for both networks
   bool input_shift = true;  ///< shift each real/fake pair by up to +-N/2 frames at the critic's input
   DvganCriticOptions critic{};
+  BodyLossOptions body{};  ///< not in the paper
   /// Fraction of the steps, 0..1, whose fakes are completions of the first 1 to N/2 frames of the real motion
   /// (the same number for the whole batch). Not in the paper: training on completions improves completion.
   /// Above 0 it requires an RNN generator.
@@ -43,6 +45,7 @@ struct DvganTrainOptions {
         input_shift,
         {.key = "input_shift", .help = "shift motions in time at the critic's input", .option = "--shift"});
     critic.list_fields(list);
+    body.list_fields(list);
     list.add(completion_share,
              {.key = "completion_share",
               .help = "fraction of the steps in which the RNN generator completes real first frames; the "
@@ -74,9 +77,10 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
   DvganTrainer(Dvgan& model, const motion::Dataset& data, const DvganTrainOptions& options)
       : ModelTrainer(model, options),
         windows_(model.context(), data),
+        sees_(model.context(), model.format(), options.critic.sees),
         critic_(Initializer(model.context(), model.options().seed + 1),
                 {.vocabulary = model.format().vocabulary.size(),
-                 .dof = model.format().dof(),
+                 .dof = sees_.size(),
                  .frames = model.format().frames,
                  .hidden = model.options().hidden,
                  .taps = model.options().taps},
@@ -86,6 +90,8 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
     if (options.ema > 0) mean_.emplace(generator_adam_, options.ema);
     detail::require_same_format(data.format, model.format());
     if (options.completion_share > 0) model.rnn();  // throws for a CNN
+    if (options.body.any())
+      body_losses_.emplace(model.format(), options.body, windows_.draw(options.seed, 0, 256).motion);
   }
 
   DvganCritic& critic() { return critic_; }
@@ -98,6 +104,7 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
 
   /// One iteration: critic_steps critic steps and one generator step.
   void iterate() override {
+    follow_schedule(options_.adam.schedule);
     const KeepPacked weights_packed;
     const std::size_t first = iteration_ * options_.steps();
     for (std::size_t i = 0; i < options_.critic_steps; ++i)
@@ -117,11 +124,11 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
       fake = make_fake(batch, key);
     }
     const Indices shift = draw_shift(key);
-    const Tensor real = shifted(Var::constant(batch.motion), shift).value();
+    const Tensor real = shifted(sees_(Var::constant(batch.motion)), shift).value();
     const Var h_txt = critic_.encode_text(batch.text), pairs_txt = concatenate({h_txt, h_txt}, 0);
     critic_loss_ = critic_loss(
         [&](const Var& x) { return critic_(x, pairs_txt); }, [&](const Var& x) { return critic_(x, h_txt); },
-        real, shifted(fake, shift).value(),
+        real, shifted(sees_(fake), shift).value(),
         random_uniform(context, key.with(RandomStream::interpolation), options_.batch), options_.lambda_gp);
     critic_adam_.step(grad(critic_loss_.loss, critic_adam_.parameters()));
     critic_loss_ = {
@@ -133,13 +140,14 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
     const Frozen critic_fixed(named_parameters(critic_));
     const RandomKey key{.seed = options_.seed, .step = step};
     const CaptionedBatch batch = windows_.draw(options_.seed, step, options_.batch);
-    const Var fake = shifted(make_fake(batch, key), draw_shift(key));
+    const Var made = make_fake(batch, key), fake = shifted(sees_(made), draw_shift(key));
     Var h_txt;
     {
       const NoGrad values_only;  // the critic's text encoding does not depend on the generator
       h_txt = critic_.encode_text(batch.text);
     }
-    const Var loss = generator_loss(critic_(fake, h_txt));
+    Var loss = generator_loss(critic_(fake, h_txt));
+    if (body_losses_) loss = loss + (*body_losses_)(made, Var::constant(batch.motion));
     generator_adam_.step(grad(loss, generator_adam_.parameters()));
     if (mean_) mean_->update();
     generator_loss_ = loss.detach();
@@ -173,6 +181,8 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
   }
 
   WindowSampler windows_;
+  CriticView sees_;
+  std::optional<BodyLosses> body_losses_;
   DvganCritic critic_;
   Adam generator_adam_, critic_adam_;
   std::optional<WeightMean> mean_;  // of the generator

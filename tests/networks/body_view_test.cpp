@@ -1,0 +1,98 @@
+// Places and velocities of the joints beside those of the decoded motion, for every root form.
+#include "motiongan/networks/body_view.hpp"
+
+#include <doctest/doctest.h>
+
+#include "../support/check_grads.hpp"
+#include "../support/walking_clips.hpp"
+#include "motiongan/data/dataset.hpp"
+
+using namespace motiongan;
+using namespace motiongan::testing;
+using motion::RootRotation;
+using motion::Vec3;
+
+namespace {
+
+motion::Dataset data_of(RootRotation form, bool position = true) {
+  return motion::Dataset::from_motions(
+      {{"a", motion::curved_walk_on_legs(0.3, {1, 0, 2}, 60), {"walk"}},
+       {"b", motion::curved_walk_on_legs(-2, {5, 0.2, -3}, 50), {"walk"}},
+       {"c", motion::curved_walk_on_legs(1, {}, 45), {"walk"}}},
+      {.frames = 8, .rate = 5, .root_position = position, .root_rotation = form, .train_share = 1});
+}
+
+const RootRotation forms[] = {RootRotation::expmap, RootRotation::heading, RootRotation::velocity,
+                              RootRotation::support};
+
+}  // namespace
+
+TEST_CASE("places and velocities are those of the motion") {
+  for (const RootRotation form : forms) {
+    CAPTURE(static_cast<int>(form));
+    const motion::Dataset data = data_of(form);
+    const motion::MotionFormat& format = data.format;
+    const std::size_t dof = format.dof(), joints = format.skeleton().size();
+    const double leg = motion::leg_length(format.skeleton());
+    std::vector<float> batch(8 * 2 * dof), window(8 * dof);
+    std::vector<motion::Motion> motions;
+    for (std::size_t b = 0; b < 2; ++b) {
+      data.window(data.train[b], 11, window);
+      motions.push_back(format.to_motion(window));
+      for (std::size_t f = 0; f < 8; ++f)
+        std::copy_n(window.begin() + static_cast<std::ptrdiff_t>(f * dof), dof,
+                    batch.begin() + static_cast<std::ptrdiff_t>((f * 2 + b) * dof));
+    }
+    const BodyView view(double_context(), format);
+    REQUIRE(view.size() == 6 * joints - 2);  // but for x and z of the root
+    const std::vector<double> seen =
+        view(Var::constant(Tensor::from(double_context(), {8, 2, dof}, batch))).value().to_host<double>();
+    for (std::size_t b = 0; b < 2; ++b) {
+      const std::vector<Vec3> world = motion::joint_positions(motions[b]);
+      const auto heading = [&](std::size_t f) {
+        return form == RootRotation::expmap ? 0 : motion::heading_from_quat(motions[b].rotation(f, 0))[1];
+      };
+      const auto in_heading = [&](Vec3 v, std::size_t f) {
+        motion::turn_ground(v[0], v[2], -heading(f));
+        return v;
+      };
+      for (std::size_t f = 0; f < 8; ++f) {
+        const double* row = &seen[(f * 2 + b) * view.size()];
+        const auto check_next = [&](double expected) { CHECK(std::abs(*row++ - expected) < 1e-9); };
+        const std::size_t now = std::max<std::size_t>(f, 1);
+        for (const std::size_t axis : {0, 1, 2})
+          for (std::size_t j = 0; j < joints; ++j) {
+            if (j == 0 && axis != 1) continue;
+            const Vec3 at = world[f * joints + j],
+                       from = in_heading(motion::subtract(at, world[f * joints]), f);
+            check_next(3 / leg * (axis == 1 ? at[1] : from[axis]));
+          }
+        for (const std::size_t axis : {0, 1, 2})
+          for (std::size_t j = 0; j < joints; ++j)
+            check_next(5 / leg *
+                       in_heading(motion::subtract(world[now * joints + j], world[(now - 1) * joints + j]),
+                                  now - 1)[axis]);
+      }
+    }
+  }
+}
+
+TEST_CASE("first and second derivatives, with and without the root's position") {
+  for (const RootRotation form : forms)
+    for (const bool position : {true, false}) {
+      CAPTURE(static_cast<int>(form));
+      CAPTURE(position);
+      const motion::Dataset data = data_of(form, position);
+      const BodyView view(double_context(), data.format);
+      const std::size_t dof = data.format.dof();
+      CHECK(check_grads(
+                double_context(), [&](auto& v) { return view(v[0]); }, {randn({3, 2, dof})}, 2) < 1e-7);
+    }
+}
+
+TEST_CASE("what cannot be seen is an error") {
+  const motion::Dataset data = data_of(RootRotation::heading);
+  const BodyView view(double_context(), data.format);
+  CHECK_THROWS_WITH_AS(view(Var::constant(Tensor(double_context(), {1, 2, data.format.dof()}))),
+                       doctest::Contains("expected [2 or more frames, batch, "), Error);
+}
