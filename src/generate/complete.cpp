@@ -25,6 +25,7 @@ struct CompleteArgs {
   Weights weights;
   Cleaning cleaning;
   motion::ClipOptions clips;
+  bool strict = false;
 };
 
 /// The clip at the model's rate, from the first seed frame on.
@@ -164,7 +165,7 @@ int complete(const CompleteArgs& args) {
   model.rnn();  // throws Error if there is no RNN generator
   const motion::MotionFormat& format = model.format();
   const Prior prior = read_prior(args, format);
-  warn_of_unknown_words(format.vocabulary, args.text);
+  check_words(format, args.text, args.strict);
   make_folder(out);
   const bool shows = !args.html.empty() || !args.png.empty();
   StreamJob job{.files = files,
@@ -230,6 +231,7 @@ const Verb complete_verb{
           ->required()
           ->type_name("CLIP.bvh");
       option("--text", args->text, "description of what comes next")->required()->type_name("TEXT");
+      add_strict_option(*verb, args->strict);
       option("--seed-frames", args->seed_frames, "frames of the clip to start with, at the model's rate")
           ->check(positive())
           ->capture_default_str();

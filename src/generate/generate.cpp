@@ -21,6 +21,7 @@ struct GenerateArgs {
   Weights weights;
   Cleaning cleaning;
   double rate = 0;
+  bool strict = false;
 };
 
 /// The texts of --text, then those of the --prompts file, one per line.
@@ -79,6 +80,7 @@ int generate(const GenerateArgs& args, const fs::path& file) {
   const std::size_t frames = motion::resampled_frames(made, format.rate, rate);
   // A window cut out of a longer motion (final cut) cannot be generated frame by frame.
   const bool streamed = model.is_recurrent() && !(model.options().cuts() && made == format.frames);
+  for (const std::string& text : texts) check_words(format, text, args.strict);
   const fs::path out = args.out;
   make_folder(out);
 
@@ -89,7 +91,6 @@ int generate(const GenerateArgs& args, const fs::path& file) {
   std::set<std::string> names;
   std::size_t files_made = 0;
   for (const std::string& text : texts) {
-    warn_of_unknown_words(format.vocabulary, text);
     std::string name = slug(text);
     for (std::size_t again = 2; !names.insert(name).second; ++again)
       name = fmt::format("{}-{}", slug(text), again);
@@ -167,6 +168,7 @@ const Verb generate_verb{
           ->type_name("TEXT")
           ->expected(1)
           ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      add_strict_option(*verb, args->strict);
       verb->add_option("--prompts", args->prompts, "file with a text on each line; lines with # are comments")
           ->type_name("FILE");
       verb->add_option("--count", args->options.count,

@@ -24,6 +24,7 @@ struct SearchArgs {
   std::uint64_t seed = 1;
   bool windows = false;
   motion::ClipOptions clips;
+  bool strict = false;
 };
 
 /// A result, as it is printed.
@@ -224,7 +225,7 @@ int search(const SearchArgs& args) {
   const Context context;
   const Dvgan model = Dvgan::load(context, file);
   const motion::MotionFormat& format = model.format();
-  warn_of_unknown_words(format.vocabulary, args.text);
+  check_words(format, args.text, args.strict);
   // The index is read while the device generates the hypotheses.
   auto opened = std::async(std::launch::async, [&] {
     return open_search_collection(args.collection, format, args.index, args.clips);
@@ -282,6 +283,7 @@ const Verb search_verb{
           ->required()
           ->type_name("MODEL");
       option("--text", args->text, "description of the motion to find")->required()->type_name("TEXT");
+      add_strict_option(*verb, args->strict);
       option("--collection", args->collection, "folder of clips of the model's skeleton, or one file")
           ->required()
           ->type_name("DIR");

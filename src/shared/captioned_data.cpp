@@ -73,6 +73,8 @@ void take_captioned_data(CaptionedDataArgs& args, const CLI::App& verb, const fs
                          const fs::path& file) {
   if (const std::string note = options_note(checkpoint); !note.empty())
     take_note(fields_of(args), verb, note, checkpoint, options_of_captioned_clips);
+  args.data.mirror = false;  // what is derived from clips serves training alone
+  args.data.stretch = 0;
   require(!args.folder.empty() || args.procedural > 0, file.string(),
           " does not say what it was trained on; give the folder of clips, and their --captions");
 }

@@ -2,6 +2,8 @@
 #pragma once
 #include <set>
 
+#include "motiongan/data/motion_format.hpp"
+#include "motiongan/data/nearest_descriptions.hpp"
 #include "motiongan/data/vocabulary.hpp"
 #include "motiongan/formats/tab_lines.hpp"
 #include "motiongan/formats/text_file.hpp"
@@ -56,16 +58,39 @@ inline std::string slug(const std::string& text) {
   return out;
 }
 
-inline void warn_of_unknown_words(const motion::Vocabulary& vocabulary, const std::string& text) {
+/// Warns of words that the model was not trained on, and names the nearest of its descriptions. Throws Error
+/// instead if `strict`.
+inline void check_words(const motion::MotionFormat& format, const std::string& text, bool strict) {
   if (const std::string note = motion::word_limit_note(text); !note.empty())
     fmt::print(stderr, "motiongan: a text {}\n", note);
-  const std::vector<std::string> words = vocabulary.unknown_words(text);
+  const std::vector<std::string> words = format.vocabulary.unknown_words(text);
   if (words.empty()) return;
-  std::string list;
-  for (const std::string& word : words) list += (list.empty() ? "\"" : ", \"") + word + "\"";
-  fmt::print(stderr, "motiongan: \"{}\": the model never saw {}{}\n", text, list,
+  const auto quoted = [](const std::vector<std::string>& texts) {
+    std::string list;
+    for (const std::string& one : texts) list += (list.empty() ? "\"" : ", \"") + one + "\"";
+    return list;
+  };
+  const std::string never = fmt::format("\"{}\": the model never saw {}", text, quoted(words));
+  const std::vector<std::string> nearest = motion::nearest_descriptions(format.descriptions, text);
+  std::string advice;
+  if (!nearest.empty())
+    advice = "; nearest of its descriptions: " + quoted(nearest);
+  else if (!format.descriptions.empty())
+    advice = "; its descriptions are, for example: " +
+             quoted({format.descriptions.begin(),
+                     format.descriptions.begin() +
+                         static_cast<std::ptrdiff_t>(std::min<std::size_t>(3, format.descriptions.size()))});
+  require(!strict, never, advice);
+  fmt::print(stderr, "motiongan: {}{}{}\n", never,
              words.size() == motion::used_words(text).size() ? "; it knows no word of this text"
-                                                             : "; treated as unknown");
+                                                             : "; treated as unknown",
+             advice);
+}
+
+/// Adds --strict to a verb that generates for a text.
+inline void add_strict_option(CLI::App& verb, bool& strict) {
+  verb.add_flag("--strict", strict,
+                "refuse a text with words that the model never saw [off: treat them as unknown]");
 }
 
 /// NAME_000.bvh and so on, for samples `first` to `first` + `count` - 1.

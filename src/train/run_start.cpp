@@ -6,11 +6,18 @@
 
 namespace motiongan::command {
 
-void add_run_options(CLI::App& verb, RunArgs& args, const std::string& save_default) {
+void add_run_options(CLI::App& verb, RunArgs& args, const std::string& save_default, bool previews) {
   verb.add_option("--save", args.save, "folder of the run [" + save_default + "]")->type_name("DIR");
   verb.add_flag("--resume", args.resume, "continue the run in --save with its original options");
   add_dry_run(verb, args.dry_run);
   add_options(verb, fields_of(args.run), "Run");
+  if (!previews) return;
+  verb.add_option("--preview", args.preview,
+                  "write preview.html and preview.png to --save every so many minutes: what the model makes "
+                  "of fixed prompts; 0: never")
+      ->type_name("MINUTES")
+      ->check(CLI::Range(0.0, 1e6))
+      ->group("Run");
 }
 
 std::string options_note(const fs::path& checkpoint) {
@@ -75,7 +82,7 @@ void print_saved_to(const fs::path& folder, double save_every_minutes) {
 
 RunResult run_shown(Trainer& trainer, const std::function<void(const fs::path&)>& write_split,
                     const RunArgs& args, const RunStart& start, const std::string& note,
-                    const ShownLosses& shown_losses, const char* verb) {
+                    const ShownLosses& shown_losses, const char* verb, Preview::Make make_preview) {
   ProgressBar bar;
   bar.start(trainer.iterations(), start.done);
   RunOptions run = args.run;
@@ -91,6 +98,11 @@ RunResult run_shown(Trainer& trainer, const std::function<void(const fs::path&)>
       values.emplace_back(short_name, (name == "recall1" ? 100 : 1) * loss_of(losses, name));
     bar.update(iteration, values);
   };
+  Preview preview(args.preview, start.folder, std::move(make_preview));
+  run.callbacks.push_back([&](const Trainer&) {
+    preview.update(trainer);
+    return false;
+  });
   catch_signals();
   const std::string again =
       fmt::format("continue: {} {} --resume --save {}", program(), verb, shell_word(start.folder.string()));

@@ -2,6 +2,7 @@
 #pragma once
 #include "motiongan/train/run.hpp"
 #include "shared/options.hpp"
+#include "train/preview.hpp"
 #include "train/training_size.hpp"
 
 namespace motiongan::command {
@@ -10,12 +11,14 @@ namespace motiongan::command {
 struct RunArgs {
   std::string save;
   bool resume = false, dry_run = false;
+  double preview = 0;  ///< minutes between two pages; 0: none
   RunOptions run;
 };
 
-/// Adds --save, --resume, --dry-run, --minutes, --save-every and --log-every. `save_default` is the default
+/// Adds --save, --resume, --dry-run, --minutes, --save-every and --log-every; and --preview, if the verb
+/// shows what its model makes (`previews`). `save_default` is the default
 /// in --help.
-void add_run_options(CLI::App& verb, RunArgs& args, const std::string& save_default);
+void add_run_options(CLI::App& verb, RunArgs& args, const std::string& save_default, bool previews);
 
 /// The options stored in a checkpoint, as take_note() reads them; empty if there is no checkpoint or it has
 /// none.
@@ -50,10 +53,10 @@ void print_saved_to(const fs::path& folder, double save_every_minutes);
 using ShownLosses = std::vector<std::pair<std::string_view, const char*>>;
 
 /// Runs a training with a progress line, handles --resume and Ctrl-C, and stores `note`, the options. Prints
-/// how it ended and how to continue. `verb` is e.g. "train dvgan".
+/// how it ended and how to continue. `verb` is e.g. "train dvgan"; `preview` makes the motions for --preview.
 RunResult run_shown(Trainer& trainer, const std::function<void(const fs::path&)>& write_split,
                     const RunArgs& args, const RunStart& start, const std::string& note,
-                    const ShownLosses& shown_losses, const char* verb);
+                    const ShownLosses& shown_losses, const char* verb, Preview::Make preview = {});
 
 /// The exit status: 0, or 128 + the signal that stopped the verb.
 int exit_status();

@@ -1,4 +1,6 @@
 // motiongan train attention: trains a model that continues a second of motion on labelled clips.
+#include "motiongan/motion/position_rotations.hpp"
+#include "motiongan/sample/action_generate.hpp"
 #include "shared/action_data.hpp"
 #include "shared/shell.hpp"
 #include "train/action_training.hpp"
@@ -37,6 +39,21 @@ void check_baseline(AttentionArgs& args, const CLI::App& verb) {
   }
 }
 
+/// For --preview: two motions of each of the first classes, after the beginnings of clips.
+Preview::Make preview_of(const Context& context, const motion::ActionDataset& data) {
+  return [&](const io::SafeTensors& checkpoint) {
+    const auto model = model_from<ActionGan>(context, checkpoint, "the run");
+    std::vector<ActionPrior> priors;
+    for (std::size_t i = 0; i < 2; ++i) priors.push_back(data.prior(data.train[i % data.train.size()], 0));
+    std::vector<view::ViewedMotion> out;
+    for (std::size_t c = 0; c < std::min(previewed, data.format.classes.size()); ++c)
+      for (const motion::PositionClip& clip : model.generate(
+               priors, ActionSchedule{{.label = c, .frames = 4 * data.format.frames}}, {.seed = 1}))
+        out.push_back({data.format.classes[c], motion::motion_from_positions(clip), data.format.frames});
+    return out;
+  };
+}
+
 RunResult train_either(ActionGan& model, const motion::ActionDataset& data, AttentionArgs& args,
                        const RunStart& start) {
   const AttentionTrainOptions& t = args.training;
@@ -48,7 +65,8 @@ RunResult train_either(ActionGan& model, const motion::ActionDataset& data, Atte
     fmt::print("Ctrl-C saves and stops. error: MSE of the {} generated frames, normalised\n",
                model.format().frames);
     BaselineTrainer trainer(model, data, AblationVariant::baseline_training(t));
-    return run_shown(trainer, write_split, args.run, start, note, {{"error", "error"}}, "train attention");
+    return run_shown(trainer, write_split, args.run, start, note, {{"error", "error"}}, "train attention",
+                     preview_of(model.context(), data));
   }
   fmt::print("{} iterations of {} critic steps, a classifier step and {}, batch {}{}\n", t.iterations,
              t.critic_steps, counted(t.generator_steps, "generator step"), t.batch, resuming);
@@ -67,7 +85,7 @@ RunResult train_either(ActionGan& model, const motion::ActionDataset& data, Atte
                     {"classifier", "clf"},
                     {"accuracy", "acc"},
                     {"gamma", "gamma"}},
-                   "train attention");
+                   "train attention", preview_of(model.context(), data));
 }
 
 int train_attention(AttentionArgs args, const CLI::App& verb) {
@@ -122,7 +140,7 @@ const Verb train_attention_verb{
       add_action_data_options(*verb, a.data, true);
       add_options(*verb, fields_of(a.model), "Model");
       add_options(*verb, fields_of(a.training), "Training");
-      add_run_options(*verb, a.run, "save/NAME, where NAME is that of FOLDER");
+      add_run_options(*verb, a.run, "save/NAME, where NAME is that of FOLDER", true);
       verb->callback([&job, args, verb] {
         fill_in_procedural(*verb, args->data.procedural);
         job = [args, verb] { return train_attention(*args, *verb); };

@@ -1,4 +1,5 @@
 // motiongan train dvgan: trains a text-to-motion model on captioned clips.
+#include "motiongan/data/descriptions.hpp"
 #include "shared/shell.hpp"
 #include "train/training.hpp"
 
@@ -34,10 +35,19 @@ int train_dvgan(TrainDvganArgs args, const CLI::App& verb) {
              start.done > 0 ? fmt::format("; resuming after iteration {}", start.done) : "");
   fmt::print("Ctrl-C saves and stops. The Wasserstein estimate should rise quickly, then fall slowly.\n");
 
+  const motion::Descriptions prompts = motion::distinct_descriptions(data.train).most_popular(previewed);
   DvganTrainer trainer(model, data, args.training);
   run_shown(
       trainer, [&](const fs::path& path) { data.write_split(path); }, args.run, start,
-      note_of(fields_of(kept)), {{"wasserstein", "wasserstein"}, {"penalty", "penalty"}}, "train dvgan");
+      note_of(fields_of(kept)), {{"wasserstein", "wasserstein"}, {"penalty", "penalty"}}, "train dvgan",
+      [&](const io::SafeTensors& checkpoint) {
+        const auto now = model_from<Dvgan>(context, checkpoint, "the run");
+        std::vector<view::ViewedMotion> out;
+        for (const std::string& text : prompts.texts)
+          for (motion::Motion& motion : now.generate(text, {.count = 2, .seed = 1}))
+            out.push_back({text, std::move(motion)});
+        return out;
+      });
   fmt::print("generate: {} generate {} --text {}\n", program(), shell_word(start.folder.string()),
              shell_quoted(data.train.front().captions.front()));
   return exit_status();
@@ -57,7 +67,7 @@ const Verb train_dvgan_verb{
       add_captioned_data_options(*verb, a);
       add_options(*verb, fields_of(a.model), "Model");
       add_options(*verb, fields_of(a.training), "Training");
-      add_run_options(*verb, a.run, "save/NAME, where NAME is that of FOLDER");
+      add_run_options(*verb, a.run, "save/NAME, where NAME is that of FOLDER", true);
       verb->callback([&job, args, verb] {
         fill_in_procedural(*verb, args->procedural);
         job = [args, verb] { return train_dvgan(*args, *verb); };

@@ -64,7 +64,7 @@ const Verb train_ranker_verb{
       add_captioned_data_options(*verb, a);
       add_options(*verb, fields_of(a.model), "Model");
       add_options(*verb, fields_of(a.training), "Training");
-      add_run_options(*verb, a.run, "save/NAME-ranker, where NAME is that of FOLDER");
+      add_run_options(*verb, a.run, "save/NAME-ranker, where NAME is that of FOLDER", false);
       verb->callback([&job, args, verb] {
         fill_in_procedural(*verb, args->procedural);
         job = [args, verb] { return train_ranker(*args, *verb); };

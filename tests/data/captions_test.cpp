@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "motiongan/data/nearest_descriptions.hpp"
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -98,4 +100,13 @@ TEST_CASE("UTF-8 is validated") {
   for (const char* bad :
        {"\xE9", "a\x80", "\xC0\xAF", "\xE0\x80\xAF", "\xED\xA0\x80", "\xF4\x90\x80\x80", "\xC3", "\xFF"})
     CHECK(!is_utf8(bad));
+}
+
+TEST_CASE("nearest descriptions share words or their beginnings") {
+  const std::vector<std::string> known{"walk", "run / jog", "walk on uneven terrain", "jump", "dance"};
+  CHECK(nearest_descriptions(known, "running") == std::vector<std::string>{"run / jog"});
+  CHECK(nearest_descriptions(known, "walk") == std::vector<std::string>{"walk", "walk on uneven terrain"});
+  CHECK(nearest_descriptions(known, "uneven walks", 1) == std::vector<std::string>{"walk on uneven terrain"});
+  CHECK(nearest_descriptions(known, "zzz").empty());
+  CHECK(nearest_descriptions({}, "walk").empty());
 }

@@ -115,36 +115,42 @@ TEST_CASE("the support's height and steps are encoded, and decoded back") {
   const std::vector<double> poses = layout.encode(m);
   const std::vector<Vec3> world = joint_positions(m);
   const std::size_t joints = m.skeleton.size();
-  std::size_t feet[2] = {};
+  std::size_t clear = 0;
   for (std::size_t f = 1; f < m.frames; ++f) {
     const double* const place = &poses[f * layout.dof() + at];
+    const auto mean_height = [&](std::size_t j) {
+      return (world[f * joints + j][1] + world[(f - 1) * joints + j][1]) / 2;
+    };
+    // Where one foot is clearly lower than the other it bears nearly all.
+    if (std::abs(mean_height(3) - mean_height(5)) < 6 * layout.softness()) continue;
+    ++clear;
+    const std::size_t foot = mean_height(3) < mean_height(5) ? 3 : 5;
+    const Vec3 step = subtract(world[f * joints + foot], world[(f - 1) * joints + foot]);
+    CHECK(std::abs(std::hypot(place[0], place[2]) - std::hypot(step[0], step[2])) < 0.005);
     double low = 1e9;
     for (std::size_t j = 0; j < joints; ++j) low = std::min(low, world[f * joints + j][1]);
-    CHECK(place[1] == doctest::Approx(low).epsilon(1e-9));
-    const auto over_both = [&](std::size_t j) {
-      return world[f * joints + j][1] + world[(f - 1) * joints + j][1];
-    };
-    const std::size_t foot = over_both(3) < over_both(5) ? 3 : 5;
-    ++feet[foot == 3 ? 0 : 1];
-    const Vec3 step = subtract(world[f * joints + foot], world[(f - 1) * joints + foot]);
-    CHECK(std::hypot(place[0], place[2]) == doctest::Approx(std::hypot(step[0], step[2])).epsilon(1e-9));
+    CHECK(place[1] >= low);
+    CHECK(place[1] - low < layout.softness());
   }
-  CHECK((feet[0] > 50 && feet[1] > 50));
-  RootTrack start = layout.track_of(m, 0);
-  start.started = false;
-  const Difference there = difference(layout.decode(poses, m.frames, m.rate, &start), m);
-  CHECK(there.position < 1e-9);
-  CHECK(there.angle < 1e-7);
-  RootTrack middle = layout.track_of(m, 99);
-  const std::span<const double> rest = std::span(poses).subspan(100 * layout.dof());
-  CHECK(difference(layout.decode(rest, 200, 10, &middle), slice(m, 100, 200)).position < 1e-9);
-  RootTrack followed = layout.track_of(m, 0);
-  for (std::size_t f = 1; f < m.frames; ++f)
-    layout.follow(std::span(poses).subspan(f * layout.dof(), layout.dof()), followed);
-  CHECK(std::abs(followed.x - m.position(m.frames - 1, 0)[0]) < 1e-9);
+  CHECK(clear > 20);
+  for (const PoseLayout& form : {layout, layout.with_floor(0.05)}) {
+    const std::vector<double> encoded = form.encode(m);
+    RootTrack start = form.track_of(m, 0);
+    start.started = false;
+    const Difference there = difference(form.decode(encoded, m.frames, m.rate, &start), m);
+    CHECK(there.position < 1e-9);
+    CHECK(there.angle < 1e-7);
+    RootTrack middle = form.track_of(m, 99);
+    const std::span<const double> rest = std::span(encoded).subspan(100 * form.dof());
+    CHECK(difference(form.decode(rest, 200, 10, &middle), slice(m, 100, 200)).position < 1e-9);
+    RootTrack followed = form.track_of(m, 0);
+    for (std::size_t f = 1; f < m.frames; ++f)
+      form.follow(std::span(encoded).subspan(f * form.dof(), form.dof()), followed);
+    CHECK(std::abs(followed.x - m.position(m.frames - 1, 0)[0]) < 1e-9);
+  }
 }
 
-TEST_CASE("an error of a leg's rotation moves the body, not the foot that stands") {
+TEST_CASE("an error of a leg's rotation moves the body, not the feet that stand") {
   const Motion m = curved_walk_on_legs(0, {}, 80);
   const PoseLayout layout(m.skeleton, true, 0, RootRotation::support);
   std::vector<double> poses = layout.encode(m);
@@ -153,18 +159,30 @@ TEST_CASE("an error of a leg's rotation moves the body, not the foot that stands
     pose[3 * 2] += 0.1 * std::sin(5.0 * static_cast<double>(f));  // the left leg trembles
     for (std::size_t d = 0; d < 3; ++d) pose[layout.position_dim() + d] = 0;
   }
-  const std::vector<Vec3> world = joint_positions(layout.decode(poses, m.frames, m.rate));
+  const Motion made = layout.decode(poses, m.frames, m.rate);
+  const std::vector<Vec3> world = joint_positions(made);
   const std::size_t joints = m.skeleton.size();
+  double moved = 0;
   for (std::size_t f = 1; f < m.frames; ++f) {
-    double low = 1e9, still = 1e9;
+    std::vector<double> heights, now;
+    Vec3 step{};
     for (std::size_t j = 0; j < joints; ++j) {
-      const Vec3 &before = world[(f - 1) * joints + j], &now = world[f * joints + j];
-      low = std::min(low, now[1]);
-      still = std::min(still, std::hypot(now[0] - before[0], now[2] - before[2]));
+      const Vec3 &a = world[(f - 1) * joints + j], &b = world[f * joints + j];
+      heights.push_back((a[1] - made.position(f - 1, 0)[1] + b[1] - made.position(f, 0)[1]) / 2);
+      now.push_back(b[1]);
     }
-    CHECK(std::abs(low) < 1e-12);
-    CHECK(still < 1e-12);
+    const std::vector<double> weights = support_weights(heights, layout.softness()),
+                              bearing = support_weights(now, layout.softness());
+    double height = 0;
+    for (std::size_t j = 0; j < joints; ++j) {
+      step = add(step, scale(subtract(world[f * joints + j], world[(f - 1) * joints + j]), weights[j]));
+      height += bearing[j] * now[j];
+    }
+    CHECK(std::abs(height) < 1e-12);
+    CHECK(std::hypot(step[0], step[2]) < 1e-12);
+    moved = std::max(moved, length(subtract(made.position(f, 0), made.position(f - 1, 0))));
   }
+  CHECK(moved > 0.05);
 }
 
 TEST_CASE("a motion decoded in pieces is the one decoded at once, bit for bit") {

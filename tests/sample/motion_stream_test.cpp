@@ -136,7 +136,9 @@ TEST_CASE("a prior is continued without a jump, in its place and with its skelet
         step = std::max(step, ground_step(whole, f, f + 1));
       }
       CHECK(largest_turn(whole, seed.frames - 1, seed.frames) < 2 * turn + 1e-4);
-      CHECK(ground_step(whole, seed.frames - 1, seed.frames) < 2 * step + 1e-3);
+      // With a support, the root also moves with the legs.
+      const double most = form == RootRotation::support ? 3 : 2;
+      CHECK(ground_step(whole, seed.frames - 1, seed.frames) < most * step + 1e-3);
       CHECK(made.position(3, 4) == prior.position(0, 4));
     }
   }

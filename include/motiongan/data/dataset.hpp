@@ -10,22 +10,13 @@
 #include "motiongan/core/error.hpp"
 #include "motiongan/data/caption_match.hpp"
 #include "motiongan/data/clip_source.hpp"
+#include "motiongan/data/dataset_clip.hpp"
 #include "motiongan/data/dataset_options.hpp"
 #include "motiongan/data/labelled_motion.hpp"
 #include "motiongan/data/motion_format.hpp"
 #include "motiongan/formats/text_file.hpp"
 
 namespace motiongan::motion {
-
-/// One clip, normalised, at the data set's common source rate.
-struct DatasetClip {
-  std::string id;
-  std::vector<std::string> captions;
-  std::vector<std::vector<int>> sentences;  ///< the captions as word indices of the vocabulary
-  std::size_t frames = 0;
-  std::vector<float> poses;  ///< [frames, kept dof]
-  bool derived = false;      ///< mirrored or stretched from another training clip
-};
 
 /// A clip that was left out.
 struct SkippedClip {

@@ -18,6 +18,7 @@
 #include "motiongan/data/captions.hpp"
 #include "motiongan/data/clip_agreement.hpp"
 #include "motiongan/data/dataset.hpp"
+#include "motiongan/data/descriptions.hpp"
 #include "motiongan/data/mirror.hpp"
 #include "motiongan/data/split.hpp"
 #include "motiongan/formats/bvh_reader.hpp"
@@ -239,7 +240,7 @@ inline void derive_clips(std::vector<Used>& used, std::vector<bool>& is_train, c
   for (Used& u : derived) used.push_back(std::move(u));
 }
 
-/// Gives a layout with a support its floor, the median height of the lowest joint over the training clips,
+/// Gives a layout with a support its floor, the median height of the support over the training clips,
 /// and changes the clips' poses accordingly.
 inline void find_floor(std::vector<Used>& used, const std::vector<bool>& is_train, PoseLayout& layout) {
   if (!layout.has_support() || !layout.root_position()) return;
@@ -396,6 +397,7 @@ inline Dataset build(const std::vector<ClipSource>& sources, const DatasetOption
   fit_range(data);
   format.check();
   format.vocabulary = Vocabulary::from_captions(training_captions);
+  format.descriptions = distinct_descriptions(data.train).most_popular(MotionFormat::most_descriptions).texts;
   for (auto* part : {&data.train, &data.test})
     for (DatasetClip& clip : *part)
       for (const std::string& caption : clip.captions) {

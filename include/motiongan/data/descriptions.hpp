@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "motiongan/data/dataset.hpp"
+#include "motiongan/data/dataset_clip.hpp"
+#include "motiongan/data/vocabulary.hpp"
 
 namespace motiongan::motion {
 

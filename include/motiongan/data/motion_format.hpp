@@ -22,11 +22,14 @@ namespace motiongan::motion {
 /// Conversion between network values and motion, and between captions and word indices.
 struct MotionFormat {
   /// Sizes beyond any model's, which a damaged file may claim.
-  static constexpr std::size_t most_frames = 65536, most_dof = 65536, most_words = 1'000'000;
+  static constexpr std::size_t most_frames = 65536, most_dof = 65536, most_words = 1'000'000,
+                               most_descriptions = 500;
 
   PoseLayout layout;  ///< holds the skeleton
   Normalizer normalizer;
   Vocabulary vocabulary;
+  /// Distinct training captions, those of most clips first, at most most_descriptions; empty if unknown.
+  std::vector<std::string> descriptions = {};
   double rate = 0;         ///< frames per second of a window
   std::size_t frames = 0;  ///< N, frames of a window
   ClipSpace space{};       ///< unit of its motion, and the up axis of the clips that it was fitted to

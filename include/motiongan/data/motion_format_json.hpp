@@ -71,9 +71,9 @@ inline motion::ClipSpace space_from_json(const nlohmann::json& json) {
 
 /// {"skeleton": HIERARCHY text, "root": joint name, "root_position", "root_rotation": "expmap", "heading",
 /// "velocity" or "support", "rate", "frames", "mean": [full dof], "std": [full dof], "relative_dims": [...],
-/// "vocabulary": [words]}, with "support" "floor", and, if known, the training range "low" and "high": [kept
-/// dof], and "unit_metres" and "clips_up". Every number round-trips exactly. Throws Error for an inconsistent
-/// format.
+/// "vocabulary": [words]}, with "support" "floor", and, if known, "descriptions", the training range "low"
+/// and "high": [kept dof], and "unit_metres" and "clips_up". Every number round-trips exactly. Throws Error
+/// for an inconsistent format.
 inline nlohmann::json to_json(const motion::MotionFormat& format) {
   format.check();
   nlohmann::json json;
@@ -88,7 +88,8 @@ inline nlohmann::json to_json(const motion::MotionFormat& format) {
   json["relative_dims"] = format.relative_dims;
   json["vocabulary"] = format.vocabulary.words();
   space_to_json(format.space, json);
-  if (format.layout.softness() > 0) json["floor"] = format.layout.floor();
+  if (!format.descriptions.empty()) json["descriptions"] = format.descriptions;
+  if (format.layout.floor()) json["floor"] = *format.layout.floor();
   if (!format.low.empty()) {
     json["low"] = format.low;
     json["high"] = format.high;
@@ -127,6 +128,8 @@ inline motion::MotionFormat motion_format_from_json(const nlohmann::json& json) 
     require(!format.low.empty(), "the motion format's 'low' is empty, expected a number per kept dimension");
   }
   format.vocabulary = motion::Vocabulary(read<std::vector<std::string>>(json, "vocabulary", "words"));
+  if (json.contains("descriptions"))
+    format.descriptions = read<std::vector<std::string>>(json, "descriptions", "texts");
   format.check();
   return format;
 }

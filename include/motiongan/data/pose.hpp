@@ -25,7 +25,7 @@ enum class RootRotation {
   heading,   ///< tilt about x, yaw about y, tilt about z: q = yaw * tilt, the tilt an exponential map without
              ///< y
   velocity,  ///< as heading, but yaw and the position's x and z as changes since the previous frame
-  support    ///< as velocity, but the position is that of the joint that bears the body
+  support    ///< as velocity, but the position is that of the joints that bear the body
 };
 constexpr NameTable<RootRotation, 4> enum_names(RootRotation) {
   return {{{RootRotation::expmap, "expmap"},
@@ -48,10 +48,10 @@ constexpr NameTable<RootRotation, 4> enum_names(RootRotation) {
 /// previous frame in that frame's heading (rotated back by its yaw). Only y, the height, remains absolute.
 ///
 /// A small error of the root moves the whole body, feet included. RootRotation::support holds instead the
-/// height of the body's lowest joint and the step of the joint that bears the body (support_joint), which are
-/// all but 0 while a foot stands. The root follows from them and from the rotations: feet stand on the ground
-/// by construction. Because a climber's or a jumper's height would otherwise set the scale of errors on the
-/// ground, with_floor() makes heights logarithmic away from the floor.
+/// height and the step of the joints that bear the body (support_weights), which are all but 0 while a foot
+/// stands. The root follows from them and from the rotations: feet stand on the ground by construction.
+/// Because a climber's or a jumper's height would otherwise set the scale of errors on the ground,
+/// with_floor() makes heights logarithmic away from the floor.
 class PoseLayout {
  public:
   PoseLayout() = default;
@@ -66,6 +66,9 @@ class PoseLayout {
         root_rotation_(root_rotation) {
     require(root < skeleton_.size(), "root joint ", root, " is not one of the skeleton's ", skeleton_.size(),
             " joints");
+    if (!has_support()) return;
+    softness_ = body_unit(skeleton_) / 50;
+    require(softness_ > 0, "the skeleton has no bones of positive length: nothing bears it");
   }
 
   const Skeleton& skeleton() const { return skeleton_; }
@@ -73,26 +76,28 @@ class PoseLayout {
   std::size_t root() const { return root_; }
   RootRotation root_rotation() const { return root_rotation_; }
 
-  /// With RootRotation::support, the same layout with the heights h of the lowest joint as asinh((h - floor)
-  /// / softness), the softness being a thirtieth of the body's unit; other forms are not changed.
+  /// With RootRotation::support, the same layout with the heights h of the support as asinh((h - floor) / (2
+  /// softness)); other forms are not changed.
   PoseLayout with_floor(double floor) const {
     PoseLayout out = *this;
-    if (has_support() && root_position_) out.floor_ = floor, out.softness_ = body_unit(skeleton_) / 30;
+    if (has_support() && root_position_) out.floor_ = floor;
     return out;
   }
   /// The same layout for a body of the same joints with other offsets.
   PoseLayout of_body(Skeleton skeleton) const {
     const PoseLayout out(std::move(skeleton), root_position_, root_, root_rotation_);
-    return softness_ > 0 ? out.with_floor(floor_) : out;
+    return floor_ ? out.with_floor(*floor_) : out;
   }
-  double floor() const { return floor_; }        ///< in the file's unit
-  double softness() const { return softness_; }  ///< in the file's unit; 0: heights are as they are
+  /// In the file's unit; unset: heights are as they are.
+  const std::optional<double>& floor() const { return floor_; }
+  /// Of RootRotation::support, in the file's unit: a fiftieth of the body's unit.
+  double softness() const { return softness_; }
 
-  /// The value of a pose for a height of the lowest joint, and the reverse.
+  /// The value of a pose for a height of the support, and the reverse.
   double lowered(double height) const {
-    return softness_ > 0 ? std::asinh((height - floor_) / softness_) : height;
+    return floor_ ? std::asinh((height - *floor_) / (2 * softness_)) : height;
   }
-  double lifted(double value) const { return softness_ > 0 ? floor_ + softness_ * std::sinh(value) : value; }
+  double lifted(double value) const { return floor_ ? *floor_ + 2 * softness_ * std::sinh(value) : value; }
 
   /// Values per pose: 3 per joint, plus 3 for the root's position.
   std::size_t dof() const { return 3 * skeleton_.size() + (root_position_ ? 3 : 0); }
@@ -248,11 +253,11 @@ class PoseLayout {
     for (std::size_t f = 0; f < motion.frames; ++f) {
       double* const pose = &poses[f * dof()];
       double* const place = pose + position_dim();
-      place[1] = lowered(place[1] + lowest_joint(joints[f]));
+      place[1] = lowered(place[1] + support_height(joints[f], softness_));
       // As in differ_track(): the first frames take the step of frame `step`.
       const std::size_t now = std::max(f, step);
       if (now >= motion.frames) continue;
-      const GroundStep offset = support_offset(joints[now - step], joints[now], pose[yaw_dim()]);
+      const GroundStep offset = support_offset(joints[now - step], joints[now], pose[yaw_dim()], softness_);
       place[0] += offset.x;
       place[2] += offset.z;
     }
@@ -266,9 +271,9 @@ class PoseLayout {
     const double turn = pose[yaw_dim()];
     if (has_support() && root_position_) {
       std::vector<Vec3> joints = joints_about_root(skeleton_, root_, rotations, positions);
-      step[1] = lifted(step[1]) - lowest_joint(joints);
+      step[1] = lifted(step[1]) - support_height(joints, softness_);
       if (!at.joints.empty()) {
-        const GroundStep offset = support_offset(at.joints, joints, turn);
+        const GroundStep offset = support_offset(at.joints, joints, turn, softness_);
         step[0] -= offset.x;
         step[2] -= offset.z;
       }
@@ -282,7 +287,8 @@ class PoseLayout {
   bool root_position_ = true;
   std::size_t root_ = 0;
   RootRotation root_rotation_ = RootRotation::expmap;
-  double floor_ = 0, softness_ = 0;
+  std::optional<double> floor_;
+  double softness_ = 0;
 };
 
 }  // namespace motiongan::motion

@@ -142,7 +142,7 @@ inline bool same_format(const std::string& then, const std::string& now) {
   const nlohmann::json before = parse_json(then);
   nlohmann::json after = parse_json(now);
   if (!before.is_object() || !after.is_object()) return false;
-  for (const char* key : {"unit_metres", "clips_up"})
+  for (const char* key : {"unit_metres", "clips_up", "descriptions"})
     if (!before.contains(key)) after.erase(key);
   return before == after;
 }

@@ -136,13 +136,12 @@ enum class WeightSource {
   raw    ///< those after the last step; only a checkpoint holds them beside the mean
 };
 
-/// Loads a file that save_model() wrote, or the model in a checkpoint. Throws Error, naming the file and the
-/// problem, for any other file, and for the last weights of a file that is not a checkpoint.
+/// The model in the contents of a file that save_model() wrote, or of a checkpoint. Throws Error, naming the
+/// file (`where`) and the problem, for any other contents, and for the last weights of a file that is not a
+/// checkpoint.
 template <class Model>
-Model load_model(const Context& context, const std::filesystem::path& path,
+Model model_from(const Context& context, const io::SafeTensors& file, const std::string& where,
                  WeightSource source = WeightSource::mean) {
-  const std::string where = path.string();
-  const io::SafeTensors file = io::SafeTensors::read(path);
   const auto options = model_options<Model>(file, where);
   auto format = model_format<Model>(file, where);
   const bool in_checkpoint = is_checkpoint(file);
@@ -159,6 +158,13 @@ Model load_model(const Context& context, const std::filesystem::path& path,
   Model model(context, std::move(format), options);
   io::load_parameters(named_parameters(model), file, where, prefix);
   return model;
+}
+
+/// Loads a file as model_from().
+template <class Model>
+Model load_model(const Context& context, const std::filesystem::path& path,
+                 WeightSource source = WeightSource::mean) {
+  return model_from<Model>(context, io::SafeTensors::read(path), path.string(), source);
 }
 
 }  // namespace motiongan

@@ -1,7 +1,9 @@
-// The joint that bears the body: the lowest one over two frames.
+// What bears the body: its lowest joints.
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -33,32 +35,46 @@ inline std::vector<Vec3> joints_about_root(const Skeleton& skeleton, std::size_t
   return out;
 }
 
-/// Height of the lowest joint relative to the root, at most 0.
-inline double lowest_joint(std::span<const Vec3> joints) {
-  double low = 0;
-  for (const Vec3& p : joints) low = std::min(low, p[1]);
-  return low;
+/// How much of the body each joint bears, [joints], by its height: exp(-height / softness), scaled so that
+/// the sum is 1. The lowest joint has most, and joints higher by a few softnesses nothing.
+inline std::vector<double> support_weights(std::span<const double> heights, double softness) {
+  const double lowest = *std::min_element(heights.begin(), heights.end());
+  std::vector<double> out;
+  double sum = 0;
+  for (const double height : heights) sum += out.emplace_back(std::exp((lowest - height) / softness));
+  for (double& weight : out) weight /= sum;
+  return out;
 }
 
-/// The joint that is lowest over two frames, by the sum of its heights in both. If a foot stands through both
-/// frames, it is that foot.
-inline std::size_t support_joint(std::span<const Vec3> before, std::span<const Vec3> now) {
-  std::size_t lowest = 0;
-  for (std::size_t j = 1; j < now.size(); ++j)
-    if (before[j][1] + now[j][1] < before[lowest][1] + now[lowest][1]) lowest = j;
-  return lowest;
+/// Height of the support, the mean of the joints by support_weights(), relative to the root.
+inline double support_height(std::span<const Vec3> joints, double softness) {
+  std::vector<double> heights;
+  for (const Vec3& p : joints) heights.push_back(p[1]);
+  const std::vector<double> weights = support_weights(heights, softness);
+  return std::inner_product(weights.begin(), weights.end(), heights.begin(), 0.0);
 }
 
-/// How far the support has gone over the ground less how far the root has, (x, z) in the heading of the first
-/// of two frames; `turn` is the change of yaw between them, in radians.
+/// A step over the ground, (x, z) in the heading of the first of two frames.
 struct GroundStep {
   double x = 0, z = 0;
 };
-inline GroundStep support_offset(std::span<const Vec3> before, std::span<const Vec3> now, double turn) {
-  const std::size_t j = support_joint(before, now);
-  GroundStep out{now[j][0], now[j][2]};
-  turn_ground(out.x, out.z, turn);
-  return {out.x - before[j][0], out.z - before[j][2]};
+
+/// How much further the support steps between two frames than the root: the mean over the joints by their
+/// support_weights(), of their mean heights in both frames. A foot that stands through both frames has a
+/// weight near 1. `turn` is the change of yaw, in radians.
+inline GroundStep support_offset(std::span<const Vec3> before, std::span<const Vec3> now, double turn,
+                                 double softness) {
+  std::vector<double> heights;
+  for (std::size_t j = 0; j < now.size(); ++j) heights.push_back((before[j][1] + now[j][1]) / 2);
+  const std::vector<double> weights = support_weights(heights, softness);
+  GroundStep out;
+  for (std::size_t j = 0; j < now.size(); ++j) {
+    double x = now[j][0], z = now[j][2];
+    turn_ground(x, z, turn);
+    out.x += weights[j] * (x - before[j][0]);
+    out.z += weights[j] * (z - before[j][2]);
+  }
+  return out;
 }
 
 }  // namespace motiongan::motion

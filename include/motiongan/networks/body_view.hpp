@@ -96,7 +96,7 @@ class BodyView {
     const Var below = axis(1);
     const Var height =
         below +
-        over_joints(layout_.has_support() ? lifted(track(1)) - marked(mark_lowest(below), below) : track(1));
+        over_joints(layout_.has_support() ? lifted(track(1)) - weighted(support(below), below) : track(1));
 
     const auto now = [&](const Var& v) { return slice(v, 1, batch, poses - batch); };
     const auto before = [&](const Var& v) { return slice(v, 1, 0, poses - batch); };
@@ -109,8 +109,8 @@ class BodyView {
       moved = turned(moved, layout_.has_steps() ? now(track(3)) : now(track(3)) - before(track(3)));
     moved = {moved.x - before(body.x), moved.z - before(body.z)};
     if (layout_.has_support()) {
-      const Var mark = mark_lowest(now(below) + before(below));
-      step = {step.x - marked(mark, moved.x), step.z - marked(mark, moved.z)};
+      const Var weights = support(affine(now(below) + before(below), 0.5));
+      step = {step.x - weighted(weights, moved.x), step.z - weighted(weights, moved.z)};
     }
     const Var speed = concatenate(
         {moved.x + over_joints(step.x), now(height) - before(height), moved.z + over_joints(step.z)}, 0);
@@ -129,19 +129,26 @@ class BodyView {
     return j == layout_.root() || (tree_.parent[j] >= 0 && motion::length(skeleton.joints[j].offset) > 0);
   }
 
-  /// The height of the lowest joint, see PoseLayout::lifted().
+  /// The height of the support, see PoseLayout::lifted().
   Var lifted(const Var& height) const {
-    const double soft = layout_.softness();
-    if (soft == 0) return height;
-    return affine(exp(height) - exp(-height), soft / 2, layout_.floor());
+    const auto& floor = layout_.floor();
+    return floor ? affine(exp(height) - exp(-height), layout_.softness(), *floor) : height;
+  }
+
+  /// As motion::support_weights(), for the heights [joints, poses].
+  Var support(const Var& heights) const {
+    const Var fixed = heights.detach();  // weights do not depend on what is subtracted from all heights
+    const Var lowest = over_joints(weighted(mark_lowest(fixed), fixed));
+    const Var parts = exp(affine(heights - lowest, -1 / layout_.softness()));
+    return parts / over_joints(reshape(sum(parts, 0), {1, heights.dim(1)}));
   }
 
   /// A row [1, poses] for every joint, [joints, poses].
   Var over_joints(const Var& row) const { return broadcast_to(row, {joints_, row.dim(1)}); }
 
-  /// The value at the marked joint of each pose: [joints, poses] to [1, poses].
-  static Var marked(const Var& mark, const Var& values) {
-    return reshape(sum(mark * values, 0), {1, values.dim(1)});
+  /// The weighted sum over the joints of each pose: [joints, poses] to [1, poses].
+  static Var weighted(const Var& weights, const Var& values) {
+    return reshape(sum(weights * values, 0), {1, values.dim(1)});
   }
 
   /// As motion::turn_ground; one angle per pose, [1, poses].

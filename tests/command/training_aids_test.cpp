@@ -1,0 +1,70 @@
+// Aids of training: previews, plots, derived clips, schedules; and words that a model never saw.
+#include <doctest/doctest.h>
+
+#include "command.hpp"
+#include "motiongan/io/safetensors.hpp"
+
+TEST_CASE("a training writes previews, and its log is plotted") {
+  const TestFolder folder;
+  REQUIRE(call("synth clips --clips 6 --seconds 5").status == 0);
+  REQUIRE(call("train dvgan clips --save run --iterations 4 --preview 0.00001" + tiny).status == 0);
+  const std::string page = bytes_of("run/preview.html");
+  CHECK(page.find("after 4 iterations") != std::string::npos);
+  CHECK(bytes_of("run/preview.png").starts_with("\x89PNG"));
+
+  const Said one = call("plot run");
+  CHECK(one.status == 0);
+  CHECK(one.has("last iteration         4"));
+  CHECK(one.has("training clips         4,"));
+  CHECK(one.has("a foot near the floor"));
+  CHECK(one.has("wrote run/plot.png and run/plot.html"));
+  CHECK(bytes_of("run/plot.png").starts_with("\x89PNG"));
+  const std::string plots = bytes_of("run/plot.html");
+  CHECK(plots.find("data:image/png;base64,iVBOR") != std::string::npos);
+  CHECK(plots.find("foot skating") != std::string::npos);
+
+  REQUIRE(call("train dvgan clips --save other --iterations 2 --seed 2" + tiny).status == 0);
+  fs::remove_all("clips");
+  const Said both = call("plot run other/log.csv --png both.png --html both.html");
+  CHECK(both.status == 0);
+  CHECK(both.has("cannot be read"));  // the clips are gone; the curves are still drawn
+  CHECK(bytes_of("both.png").starts_with("\x89PNG"));
+  const Said none = call("plot nowhere");
+  CHECK(none.status == 1);
+  CHECK(none.has("nowhere"));
+  CHECK(call("plot run --png curves.txt").status == 1);
+}
+
+TEST_CASE("mirrored and stretched clips, by description, what the body shows, a schedule") {
+  const TestFolder folder;
+  REQUIRE(call("synth clips --clips 6 --seconds 5").status == 0);
+  const std::string options =
+      " --mirror --stretch 0.1 --balance --root-rotation support --critic-sees both --loss-smooth 1"
+      " --loss-contact 1 --lr-schedule cosine" +
+      tiny;
+  const Said whole = call("train dvgan clips --save whole --iterations 4" + options);
+  CHECK(whole.status == 0);
+  CHECK(whole.has("4 for training, 2 held out for testing; 20 derived from those for training"));
+  CHECK(bytes_of("whole/split.tsv").find("mirrored") == std::string::npos);
+  // The schedule's length is saved: a run that stops early resumes along the same curve.
+  REQUIRE(call("train dvgan clips --save parts --iterations 2 --lr-iterations 4" + options).status == 0);
+  REQUIRE(call("train dvgan --resume --save parts --iterations 4").status == 0);
+  CHECK(motiongan::io::SafeTensors::read("parts/generator.safetensors").tensors ==
+        motiongan::io::SafeTensors::read("whole/generator.safetensors").tensors);
+  CHECK(call("generate whole --text walk --out made").status == 0);
+}
+
+TEST_CASE("words that the model never saw: the nearest descriptions are named, --strict refuses") {
+  const TestFolder folder;
+  REQUIRE(call("synth clips --clips 6 --seconds 5").status == 0);
+  REQUIRE(call("train dvgan clips --save run --iterations 1" + tiny).status == 0);
+  const Said said = call("generate run --text 'a walker moonwalks' --out made");
+  CHECK(said.status == 0);
+  CHECK(said.has("the model never saw \"walker\", \"moonwalks\""));
+  CHECK(said.has("nearest of its descriptions: \"a person walks"));
+  const Said refused = call("generate run --text 'a walker moonwalks' --strict --out strict");
+  CHECK(refused.status == 1);
+  CHECK(refused.has("nearest of its descriptions: \"a person walks"));
+  CHECK(!fs::exists("strict"));
+  CHECK(call("generate run --text zzz --out made").has("its descriptions are, for example: \""));
+}
