@@ -5,8 +5,10 @@
 #include "evaluate/evaluate_model.hpp"
 #include "motiongan/formats/tab_lines.hpp"
 #include "motiongan/formats/text_file.hpp"
+#include "shared/cleaning.hpp"
 #include "shared/outputs.hpp"
 #include "shared/prompt.hpp"
+#include "shared/weights.hpp"
 #include "train/ranking.hpp"
 #include "train/run_start.hpp"
 
@@ -16,6 +18,8 @@ namespace {
 struct EvaluateModelArgs : CaptionedDataArgs {
   std::string model, ranker, json;
   ModelEvaluationOptions evaluation;
+  Weights weights;
+  Cleaning cleaning;
 };
 
 /// How many of the test clips the run in `folder` was trained on, by its split.tsv; nothing if there is none.
@@ -64,7 +68,7 @@ int run_evaluation(EvaluateModelArgs args, const CLI::App& verb) {
   check_output("--json", args.json, json_output, {file, ranked_by, args.folder, args.data.captions});
   const fs::path checkpoint = RunFiles{file.parent_path()}.checkpoint();
   const Context context;
-  const Dvgan model = Dvgan::load(context, file);
+  const Dvgan model = load_with<Dvgan>(context, file, args.model, args.weights);
   const Ranker ranker = Ranker::load(context, ranked_by);
   const motion::MotionFormat& format = model.format();
   ranker.format().require_skeleton(format.skeleton(), "the model " + file.string());
@@ -84,6 +88,10 @@ int run_evaluation(EvaluateModelArgs args, const CLI::App& verb) {
   print_fact("device", describe(context.device()));
   warn_of_data(data, model, file.parent_path(), ranker, ranked_by.parent_path());
 
+  args.cleaning.options.unit_metres = args.evaluation.feet.unit_metres;
+  args.cleaning.options.foot_joints = args.evaluation.feet.feet;
+  if (args.cleaning.on())
+    args.evaluation.finish = [&](motion::Motion motion) { return args.cleaning.apply(std::move(motion)); };
   const RealEvaluation real = evaluate_real(ranker, data, args.evaluation);
   print_fact("choices",
              fmt::format("K = {} of {}, {} generated and {} real motions of each",
@@ -130,6 +138,8 @@ const Verb evaluate_model_verb{
              "length of the motions that drift is measured on (RNN generators only); 0: no drift")
           ->check(not_negative());
       add_quality_options(*verb, a.evaluation.feet);
+      add_weights_option(*verb, a.weights);
+      add_clean_choice(*verb, a.cleaning);
       verb->add_option("--json", a.json, "also write all results as JSON")->type_name("FILE");
       verb->callback([&job, args, verb] {
         fill_in_procedural(*verb, args->procedural);

@@ -17,8 +17,11 @@ motion::Motion Cleaning::apply(motion::Motion motion, std::size_t given) const {
   return motion::clean(motion, now);
 }
 
-void add_clean_options(CLI::App& verb, Cleaning& cleaning, const std::string& without) {
-  const std::string group = "Clean-up";
+namespace {
+constexpr const char* group = "Clean-up";
+}
+
+void add_clean_choice(CLI::App& verb, Cleaning& cleaning, const std::string& without) {
   verb.add_option(
           "--clean", cleaning.parts,
           "what to clean up: smooth filters trembling, feet puts a floating body on the floor and holds "
@@ -32,6 +35,10 @@ void add_clean_options(CLI::App& verb, Cleaning& cleaning, const std::string& wi
       ->check(positive())
       ->capture_default_str()
       ->group(group);
+}
+
+void add_clean_options(CLI::App& verb, Cleaning& cleaning, const std::string& without) {
+  add_clean_choice(verb, cleaning, without);
   add_body_options(verb, cleaning.options.unit_metres, cleaning.options.foot_joints, group);
 }
 

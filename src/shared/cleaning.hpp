@@ -15,7 +15,10 @@ struct Cleaning {
   motion::Motion apply(motion::Motion motion, std::size_t given = 0) const;
 };
 
-/// Adds --clean and what belongs to it; `without` says, for --help, what is done without it.
+/// Adds --clean and --cutoff; `without` says, for --help, what is done without it.
+void add_clean_choice(CLI::App& verb, Cleaning& cleaning, const std::string& without = "nothing");
+
+/// Adds these, and --unit-metres and --feet.
 void add_clean_options(CLI::App& verb, Cleaning& cleaning, const std::string& without = "nothing");
 
 }  // namespace motiongan::command

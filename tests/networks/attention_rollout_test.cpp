@@ -55,21 +55,24 @@ double difference(const Tensor& a, const Tensor& b) {
 TEST_CASE("equals the generator to rounding over several steps with changing classes") {
   struct Case {
     std::size_t frames, batch, dof, hidden, noise;
-    bool attention;
+    bool attention, continues = false;
   };
   for (const Precision precision : {Precision::f32, Precision::f64})
     for (const Case& k : {Case{30, 3, 93, 64, 0, true},
                           {7, 1, 5, 20, 0, true},
                           {1, 2, 17, 9, 4, true},
                           {5, 13, 16, 40, 1, false},
-                          {33, 2, 31, 256, 0, true}}) {
+                          {33, 2, 31, 256, 0, true},
+                          {30, 3, 93, 64, 0, true, true},
+                          {6, 2, 5, 20, 2, false, true}}) {
       CAPTURE(k.frames);
       const Context& c = context(precision);
       const AttentionGenerator g = generator(c, {.dof = k.dof,
                                                  .classes = classes,
                                                  .hidden = k.hidden,
                                                  .noise_dim = k.noise,
-                                                 .attention = k.attention});
+                                                 .attention = k.attention,
+                                                 .continues = k.continues});
       AttentionRollout rollout(g);
       Tensor fast = prior(c, k.frames, k.batch, k.dof), plain = fast;
       for (std::size_t step : {0u, 1u, 2u}) {
@@ -83,6 +86,22 @@ TEST_CASE("equals the generator to rounding over several steps with changing cla
         CHECK(difference(fast, plain) < (precision == Precision::f64 ? 1e-12 : 1e-5));
       }
     }
+}
+
+TEST_CASE("a generator that continues adds its output to the prior's last frame") {
+  const Context& c = context(Precision::f64);
+  AttentionGeneratorOptions options{.dof = 5, .classes = classes, .hidden = 12};
+  const Tensor x = prior(c, 6, 3, 5), y = one_hot(c, 3);
+  const std::vector<double> poses = generator(c, options)(Var::constant(x), Var::constant(y))
+                                        .value()
+                                        .to_host<double>();
+  options.continues = true;
+  const std::vector<double> continued = generator(c, options)(Var::constant(x), Var::constant(y))
+                                            .value()
+                                            .to_host<double>(),
+                            given = x.to_host<double>();
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    CHECK(continued[i] == doctest::Approx(poses[i] + given[5 * 15 + i % 15]));
 }
 
 TEST_CASE("a sample is the same alone and in a batch, bit for bit") {

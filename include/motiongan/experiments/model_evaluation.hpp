@@ -1,6 +1,8 @@
 // Evaluation of a text-conditioned generator against real motion: inception score and retrieval (Lin & Amer,
 // Table 2), FID, diversity, multimodality and motion quality.
 #pragma once
+#include <functional>
+
 #include "motiongan/data/descriptions.hpp"
 #include "motiongan/metrics/diversity.hpp"
 #include "motiongan/metrics/drift.hpp"
@@ -22,6 +24,9 @@ struct ModelEvaluationOptions {
   FootSkateOptions feet{};
   double drift_seconds = 30;      ///< length of the motions that drift is measured on; RNN generators only
   std::size_t drift_motions = 8;  ///< their number; they cycle through the most frequent descriptions
+  /// Applied to every generated motion before it is measured, such as motion::clean(); but not to those that
+  /// drift is measured on. Unset: nothing.
+  std::function<motion::Motion(motion::Motion)> finish = {};
 };
 
 /// Measures of K * samples motions, `samples` of each description, with one ranker.
@@ -194,7 +199,7 @@ inline ModelEvaluation evaluate_model(const Dvgan& model, const Ranker& ranker, 
     const GenerateOptions wanted{
         .count = options.samples, .seed = options.seed, .first_sample = d * options.samples};
     for (motion::Motion& made : model.generate(real.descriptions.texts[d], wanted)) {
-      motions.push_back(std::move(made));
+      motions.push_back(options.finish ? options.finish(std::move(made)) : std::move(made));
       right.push_back({d});
     }
   }

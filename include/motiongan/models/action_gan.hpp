@@ -30,6 +30,7 @@ struct ActionGanOptions {
   std::size_t hidden = 256;   ///< C, channels of the hidden layers
   std::size_t noise_dim = 0;  ///< noise channels next to the class; the paper: 0; the LSTM must have 0
   bool attention = true;      ///< self-attention in generator, critic and classifier
+  bool continues = false;     ///< generate changes from the prior's last pose, not poses; the paper: no
   std::uint64_t seed = 1;     ///< seed of the initial weights
 
   void list_fields(FieldList& list) {
@@ -40,6 +41,10 @@ struct ActionGanOptions {
                          .saved = false});  // it is the kind of the file
     list.add(hidden, {.key = "hidden", .help = "width of the networks", .range = Range::between(1, 65536)});
     list.add(attention, {.key = "attention", .help = "self-attention in all networks"});
+    list.add(continues, {.key = "continues",
+                         .help = "generate changes from the given second's last pose, not poses; the paper: "
+                                 "off",
+                         .option = "--from-last-pose"});
     list.add(noise_dim, {.key = "noise_dim",
                          .help = "noise channels next to the class; the paper: 0",
                          .range = Range::between(0, 65536),
@@ -153,7 +158,9 @@ class ActionGan {
                                        .classes = format.classes.size(),
                                        .hidden = options.hidden,
                                        .noise_dim = options.noise_dim,
-                                       .attention = options.attention});
+                                       .attention = options.attention,
+                                       .continues = options.continues});
+    require(!options.continues, "the LSTM baseline generates poses: it has no form that continues");
     require(options.noise_dim == 0, "the LSTM baseline takes no noise: noise_dim is ", options.noise_dim,
             ", expected 0");
     return LstmBaseline(init,

@@ -60,7 +60,13 @@ class AttentionRollout {
     compute(first_[1]);
     compute(second_[1]);
     decode_.c = Tensor(context_, {frames_, batch_, options_.dof});
+    if (options_.continues) {
+      const NoGrad values_only;
+      decode_.residual = AttentionGenerator::last_frames(Var::constant(prior)).value();
+      decode_.residual_ld = options_.dof;
+    }
     compute(decode_);
+    decode_.residual = {};
     return std::exchange(decode_.c, {});
   }
 
