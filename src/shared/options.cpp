@@ -59,16 +59,16 @@ struct AddOption {
   }
 };
 
-bool given(const CLI::App& verb, const std::string& name) {
-  const CLI::Option* const option = verb.get_option_no_throw(name);
-  return option != nullptr && option->count() > 0;
-}
-
 bool contains(const std::vector<std::string_view>& list, std::string_view name) {
   return std::find(list.begin(), list.end(), name) != list.end();
 }
 
 }  // namespace
+
+bool given(const CLI::App& verb, const std::string& name) {
+  const CLI::Option* const option = verb.get_option_no_throw(name);
+  return option != nullptr && option->count() > 0;
+}
 
 CLI::Validator in_range(const Range& range, bool whole) {
   return {[range, whole](std::string& text) {

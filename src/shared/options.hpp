@@ -6,6 +6,9 @@
 
 namespace motiongan::command {
 
+/// Whether the command line gives the option `name` of the verb.
+bool given(const CLI::App& verb, const std::string& name);
+
 /// Adds an option to the verb for each field that has one, with its help, default and range. `group` is the
 /// heading in --help for fields that name none.
 void add_options(CLI::App& verb, const FieldList& fields, const std::string& group);

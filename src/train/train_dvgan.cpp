@@ -1,13 +1,14 @@
 // motiongan train dvgan: trains a text-to-motion model on captioned clips.
 #include "motiongan/data/descriptions.hpp"
 #include "shared/shell.hpp"
-#include "train/training.hpp"
+#include "train/preset.hpp"
 
 namespace motiongan::command {
 namespace {
 
 struct TrainDvganArgs : DvganArgs {
   RunArgs run;
+  TrainingPreset preset = TrainingPreset::steady;
 };
 
 int train_dvgan(TrainDvganArgs args, const CLI::App& verb) {
@@ -17,6 +18,7 @@ int train_dvgan(TrainDvganArgs args, const CLI::App& verb) {
                                    [&](const std::string& note, const fs::path& from) {
                                      take_note(fields_of(kept), verb, note, from, options_of_captioned_clips);
                                    });
+  if (!args.run.resume) apply(args.preset, args, verb);
   fill_in_choices(args);
   if (is_done(start, args.run, args.training.iterations)) return 0;
   if (!args.run.dry_run) make_folder(start.folder);
@@ -24,6 +26,7 @@ int train_dvgan(TrainDvganArgs args, const CLI::App& verb) {
   const Context context;
   const motion::Dataset data = load_data(args);
   print_data(data, args);
+  without_feet(args, data.format.skeleton(), verb);
   if (only_sized(context, args.training, size_options(args.training.batch, args.model.hidden),
                  args.run.dry_run, args.training.iterations - start.done, builder(data, args.model)))
     return 0;
@@ -67,6 +70,7 @@ const Verb train_dvgan_verb{
       add_captioned_data_options(*verb, a);
       add_options(*verb, fields_of(a.model), "Model");
       add_options(*verb, fields_of(a.training), "Training");
+      add_preset_option(*verb, args->preset);
       add_run_options(*verb, a.run, "save/NAME, where NAME is that of FOLDER", true);
       verb->callback([&job, args, verb] {
         fill_in_procedural(*verb, args->procedural);

@@ -54,6 +54,27 @@ TEST_CASE("mirrored and stretched clips, by description, what the body shows, a 
   CHECK(call("generate whole --text walk --out made").status == 0);
 }
 
+TEST_CASE("presets set what the command line does not") {
+  const TestFolder folder;
+  REQUIRE(call("synth clips --clips 6 --seconds 5").status == 0);
+  const auto options = [](const std::string& run, const char* key) {
+    return motiongan::io::SafeTensors::read(run + "/checkpoint.safetensors").metadata.at(key);
+  };
+  REQUIRE(call("train dvgan clips --save steady --iterations 1" + tiny).status == 0);
+  CHECK(options("steady", "training").find("\"critic_sees\":\"both\"") != std::string::npos);
+  CHECK(options("steady", "format").find("\"root_rotation\":\"support\"") != std::string::npos);
+  REQUIRE(call("train dvgan clips --save paper --preset paper --iterations 1" + tiny).status == 0);
+  CHECK(options("paper", "training").find("\"critic_sees\":\"rotations\"") != std::string::npos);
+  CHECK(options("paper", "format").find("\"root_rotation\":\"expmap\"") != std::string::npos);
+  CHECK(options("paper", "training").find("\"ema\":0.0") != std::string::npos);
+  REQUIRE(call("train dvgan clips --save mixed --preset paper --critic-sees positions --iterations 1" + tiny)
+              .status == 0);
+  CHECK(options("mixed", "training").find("\"critic_sees\":\"positions\"") != std::string::npos);
+  // A resumed run keeps its options, whatever the preset would be.
+  CHECK(call("train dvgan --resume --save paper --iterations 2").status == 0);
+  CHECK(call("train dvgan clips --save x --preset fast" + tiny).status > 100);
+}
+
 TEST_CASE("words that the model never saw: the nearest descriptions are named, --strict refuses") {
   const TestFolder folder;
   REQUIRE(call("synth clips --clips 6 --seconds 5").status == 0);

@@ -125,6 +125,24 @@ TEST_CASE("the score is the weighted sum of the levels' scores, convex at first"
   CHECK(scores(model, 8)[0] == doctest::Approx(a[0]).epsilon(1e-12));
 }
 
+TEST_CASE("scores and penalties are the same whether `encode` is applied first or through other layers") {
+  const CnnCritic composed = made({.frames = 8}), direct = made({.frames = 8, .composes = false});
+  const std::vector<double> expected = scores(composed, 8), found = scores(direct, 8);
+  for (std::size_t b = 0; b < batch; ++b) CHECK(std::abs(found[b] - expected[b]) < 1e-12);
+  const auto penalty = [&](CnnCritic critic) {
+    const Var text = critic.encode_text(some_text());
+    const Var loss =
+        gradient_penalty([&](const Var& x) { return critic(x, text); }, Var::leaf(some_motion(8)));
+    std::vector<double> out{loss.item()};
+    for (const Var& g : grad(loss, values_of(named_parameters(critic))))
+      for (const double v : g.value().to_host<double>()) out.push_back(v);
+    return out;
+  };
+  const std::vector<double> a = penalty(composed), b = penalty(direct);
+  REQUIRE(a.size() == b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) CHECK(std::abs(a[i] - b[i]) < 1e-10);
+}
+
 TEST_CASE("a sample's score does not depend on its batch; it depends on text and motion") {
   const CnnCritic model = made({.frames = 4});
   const std::vector<double> both = scores(model, 4);

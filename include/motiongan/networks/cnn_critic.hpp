@@ -29,6 +29,7 @@ struct CnnCriticOptions {
   std::size_t taps = 3;        ///< kernel size of the convolutions: 3 or 5
   Validation validation = Validation::dense;
   LevelWeights level_weights = LevelWeights::exp;
+  bool composes = true;  ///< apply `encode` through the layers that read it, see CnnTrunk; equal to rounding
 };
 
 /// Scores motion against a text. `encode` and residual steps halve the frames level by level; every validated
@@ -65,16 +66,16 @@ class CnnCritic {
             motion.shape(), ", expected [", options_.frames, ", batch, ", options_.dof, "]");
     const std::size_t batch = motion.dim(1);
     const Var text = reshape(h_txt, {1, batch, options_.hidden});
-    Var h = CnnTrunk::with_ones(motion);
-    const Var encode = trunk_.encoding();
+    const Var encode = options_.composes ? trunk_.encoding() : Var();
+    Var h = options_.composes ? CnnTrunk::with_ones(motion) : trunk_.encoded(motion);
     std::vector<Var> scores;  // from the finest validated level to the coarsest
     for (std::size_t i = levels_ + 1; i-- > 0;) {
-      const bool finest = i == levels_;
+      const bool finest = i == levels_, composed = finest && options_.composes;
       if (!finest) h = trunk_.halve(i, h, encode);
       if (is_validated(i)) {
         const Validate& v = validate_[i];
         scores.push_back(
-            v(h, text, finest ? CnnTrunk::after(v.motion, encode) : v.motion.weight, v.motion.bias));
+            v(h, text, composed ? CnnTrunk::after(v.motion, encode) : v.motion.weight, v.motion.bias));
       }
     }
     std::reverse(scores.begin(), scores.end());

@@ -27,6 +27,10 @@ class CnnTrunk {
     return concatenate({motion, ones(motion.context(), {motion.dim(0), motion.dim(1), 1})}, 2);
   }
 
+  /// The hidden states [N, B, k] of the motion: for frames of more values than a hidden state, with which
+  /// composed weights would be larger.
+  Var encoded(const Var& motion) const { return encode_(motion); }
+
   /// Weight and bias of `encode`, concatenated: [k, M + 1].
   Var encoding() const {
     const std::size_t out = encode_.weight.dim(1), in = encode_.weight.dim(2);
@@ -41,10 +45,10 @@ class CnnTrunk {
 
   /// Level i from level i + 1, with half the frames: Down(h) + conv2(ReLU(Down(conv1(h)))), Down being the
   /// mean of pairs of frames. At the finest level h is with_ones(motion), to which `encoding` is still to be
-  /// applied.
+  /// applied; without an encoding it is encoded(motion).
   Var halve(std::size_t i, const Var& h, const Var& encoding) const {
     const Residual& r = residual_[i];
-    const bool finest = i + 1 == levels();
+    const bool finest = i + 1 == levels() && !encoding.empty();
     const std::size_t frames = h.dim(0), half = frames / 2;
     const Var pairs = pair_means(h), weight = finest ? after(r.conv1, encoding) : r.conv1.weight;
     Var down = slice(pairs, 0, half + 1, half);

@@ -112,6 +112,7 @@ class DvganCritic {
                               .diff_input = options.diff_input});
     sizes.validation = options.validation;
     sizes.level_weights = options.level_weights;
+    sizes.composes = options.sees == CriticSees::rotations || sizes.dof < sizes.hidden;
     return CnnCritic(init, sizes);
   }
 
