@@ -12,7 +12,8 @@ using namespace motiongan::motion;
 TEST_CASE("search, with a model of two iterations") {
   const TestFolder folder;
   REQUIRE(call("synth clips --clips 6 --seconds 6").status == 0);
-  REQUIRE(call("train dvgan clips --save run --iterations 2" + tiny).status == 0);
+  // Steps and turns into the first frame of a hypothesis are lost in a BVH file; headings are not.
+  REQUIRE(call("train dvgan clips --save run --iterations 2 --root-rotation heading" + tiny).status == 0);
   const std::string search = "search --model run --text walk --collection clips ";
 
   SUBCASE("a table, JSON, a page and the hypotheses; the second time nothing is read") {

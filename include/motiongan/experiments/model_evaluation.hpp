@@ -3,6 +3,7 @@
 #pragma once
 #include <functional>
 
+#include "motiongan/data/dataset.hpp"
 #include "motiongan/data/descriptions.hpp"
 #include "motiongan/metrics/diversity.hpp"
 #include "motiongan/metrics/drift.hpp"

@@ -1,5 +1,6 @@
 // Evaluation of a ranker on held-out clips (Lin & Amer, Table 1).
 #pragma once
+#include "motiongan/data/dataset.hpp"
 #include "motiongan/data/descriptions.hpp"
 #include "motiongan/metrics/inception_score.hpp"
 #include "motiongan/metrics/retrieval.hpp"

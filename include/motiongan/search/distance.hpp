@@ -24,7 +24,7 @@ inline std::size_t search_reach(std::size_t frames) { return frames / 2; }
 /// (the root's x, z and yaw) are made relative to the first overlapping frame, in both, because the frames
 /// before it have no counterpart. A clip that contains a hypothesis therefore has distance 0 at the right
 /// shift, wherever and in whichever direction it was recorded. With steps and turns no dimension is
-/// relative.
+/// relative; those that lead to a clip's first frame are not known, and taken from its second.
 inline double search_distance(const motion::MotionFormat& format, std::span<const float> window,
                               std::span<const float> hypothesis, int shift) {
   const std::size_t dof = format.dof(), size = format.frames * dof;
