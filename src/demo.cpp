@@ -52,6 +52,8 @@ DvganArgs demo_options() {
   args.procedural = 68;
   args.data.frames = 32;
   args.data.rate = 8;
+  args.data.root_rotation = motion::RootRotation::support;
+  args.training.critic.sees = CriticSees::both;
   args.model.hidden = 64;
   args.training.batch = 32;
   args.training.critic_steps = 5;
