@@ -88,20 +88,18 @@ TEST_CASE("equals the generator to rounding over several steps with changing cla
     }
 }
 
-TEST_CASE("a generator that continues adds its output to the prior's last frame") {
+TEST_CASE("a generator that continues adds its output to the prior's last frame, which fades") {
   const Context& c = context(Precision::f64);
   AttentionGeneratorOptions options{.dof = 5, .classes = classes, .hidden = 12};
   const Tensor x = prior(c, 6, 3, 5), y = one_hot(c, 3);
-  const std::vector<double> poses = generator(c, options)(Var::constant(x), Var::constant(y))
-                                        .value()
-                                        .to_host<double>();
+  const std::vector<double> poses =
+      generator(c, options)(Var::constant(x), Var::constant(y)).value().to_host<double>();
   options.continues = true;
-  const std::vector<double> continued = generator(c, options)(Var::constant(x), Var::constant(y))
-                                            .value()
-                                            .to_host<double>(),
-                            given = x.to_host<double>();
+  const std::vector<double>
+      continued = generator(c, options)(Var::constant(x), Var::constant(y)).value().to_host<double>(),
+      given = x.to_host<double>();
   for (std::size_t i = 0; i < poses.size(); ++i)
-    CHECK(continued[i] == doctest::Approx(poses[i] + given[5 * 15 + i % 15]));
+    CHECK(continued[i] == doctest::Approx(poses[i] + (6.0 - double(i / 15)) / 7 * given[5 * 15 + i % 15]));
 }
 
 TEST_CASE("a sample is the same alone and in a batch, bit for bit") {

@@ -30,7 +30,7 @@ struct ActionGanOptions {
   std::size_t hidden = 256;   ///< C, channels of the hidden layers
   std::size_t noise_dim = 0;  ///< noise channels next to the class; the paper: 0; the LSTM must have 0
   bool attention = true;      ///< self-attention in generator, critic and classifier
-  bool continues = false;     ///< generate changes from the prior's last pose, not poses; the paper: no
+  bool continues = false;     ///< generate what is added to the prior's last pose, which fades; the paper: no
   std::uint64_t seed = 1;     ///< seed of the initial weights
 
   void list_fields(FieldList& list) {
@@ -42,8 +42,8 @@ struct ActionGanOptions {
     list.add(hidden, {.key = "hidden", .help = "width of the networks", .range = Range::between(1, 65536)});
     list.add(attention, {.key = "attention", .help = "self-attention in all networks"});
     list.add(continues, {.key = "continues",
-                         .help = "generate changes from the given second's last pose, not poses; the paper: "
-                                 "off",
+                         .help = "generate what is added to the given second's last pose, which fades over "
+                                 "the next; the paper: off",
                          .option = "--from-last-pose"});
     list.add(noise_dim, {.key = "noise_dim",
                          .help = "noise channels next to the class; the paper: 0",

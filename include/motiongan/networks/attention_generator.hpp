@@ -10,7 +10,7 @@ struct AttentionGeneratorOptions {
   std::size_t hidden = 256;   ///< C, hidden width
   std::size_t noise_dim = 0;  ///< noise values per sample, next to the class; the paper has none
   bool attention = true;      ///< false: the paper's ablation
-  bool continues = false;     ///< the output is added to the prior's last frame; the paper: no
+  bool continues = false;     ///< the output is added to the prior's last frame, fading; the paper: no
 };
 
 /// Maps one second of motion and a class to the next second: `encode` -> `block.0` -> `attention` ->
@@ -33,14 +33,21 @@ class AttentionGenerator {
   /// The future [T, B, dof] of a normalised prior [T, B, dof] for `classes` [B, Y] (one-hot). `noise` [B,
   /// noise_dim] is required if noise_dim > 0, and not accepted otherwise. Throws Error for any other shape.
   Var operator()(const Var& prior, const Var& classes, const Var& noise = {}) const {
-    const Var made = decode_(
-        residual_block(block1_, attend(attention_, before_attention(prior, classes, noise)), true));
-    return options_.continues ? made + last_frames(prior) : made;
+    const Var made =
+        decode_(residual_block(block1_, attend(attention_, before_attention(prior, classes, noise)), true));
+    return options_.continues ? made + fading_frames(prior) : made;
   }
 
-  /// The prior's last frame in every frame, [T, B, dof]: what the output is added to if it continues.
-  static Var last_frames(const Var& prior) {
-    return broadcast_to(slice(prior, 0, prior.dim(0) - 1, 1), prior.shape());
+  /// The prior's last frame times (T - t) / (T + 1) in frame t = 0 .. T - 1, [T, B, dof]: what the output is
+  /// added to if it continues. The next second thus begins where the last one ends, and yet ends in a pose of
+  /// its own: errors do not add up over the seconds.
+  static Var fading_frames(const Var& prior) {
+    const std::size_t frames = prior.dim(0);
+    std::vector<double> weights;
+    for (std::size_t t = 0; t < frames; ++t)
+      weights.push_back(static_cast<double>(frames - t) / static_cast<double>(frames + 1));
+    const Var fading = Var::constant(Tensor::from(prior.context(), {frames, 1, 1}, weights));
+    return broadcast_to(fading, prior.shape()) * broadcast_to(slice(prior, 0, frames - 1, 1), prior.shape());
   }
 
   /// Attention weights [B, T, T]: row j is what frame j attends to. Throws Error if the model has no

@@ -62,7 +62,7 @@ class AttentionRollout {
     decode_.c = Tensor(context_, {frames_, batch_, options_.dof});
     if (options_.continues) {
       const NoGrad values_only;
-      decode_.residual = AttentionGenerator::last_frames(Var::constant(prior)).value();
+      decode_.residual = AttentionGenerator::fading_frames(Var::constant(prior)).value();
       decode_.residual_ld = options_.dof;
     }
     compute(decode_);
