@@ -243,7 +243,7 @@ inline void derive_clips(std::vector<Used>& used, std::vector<bool>& is_train, c
 /// Gives a layout with a support its floor, the median height of the support over the training clips,
 /// and changes the clips' poses accordingly.
 inline void find_floor(std::vector<Used>& used, const std::vector<bool>& is_train, PoseLayout& layout) {
-  if (!layout.has_support() || !layout.root_position()) return;
+  if (!layout.has_support()) return;
   const std::size_t dof = layout.dof(), at = layout.position_dim() + 1;
   std::vector<double> heights;
   for (std::size_t c = 0; c < used.size(); ++c)

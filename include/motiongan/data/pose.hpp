@@ -80,7 +80,7 @@ class PoseLayout {
   /// softness)); other forms are not changed.
   PoseLayout with_floor(double floor) const {
     PoseLayout out = *this;
-    if (has_support() && root_position_) out.floor_ = floor;
+    if (has_support()) out.floor_ = floor;
     return out;
   }
   /// The same layout for a body of the same joints with other offsets.
@@ -112,10 +112,12 @@ class PoseLayout {
   bool has_yaw() const { return root_rotation_ != RootRotation::expmap; }
 
   /// Whether poses hold steps and turns, which decode() integrates.
-  bool has_steps() const { return root_rotation_ == RootRotation::velocity || has_support(); }
+  bool has_steps() const {
+    return root_rotation_ == RootRotation::velocity || root_rotation_ == RootRotation::support;
+  }
 
-  /// Whether the root's position is given by the joint that bears the body.
-  bool has_support() const { return root_rotation_ == RootRotation::support; }
+  /// Whether the root's position is given by the joints that bear the body.
+  bool has_support() const { return root_rotation_ == RootRotation::support && root_position_; }
 
   /// Index of the root's yaw, or of its turn. Throws Error if the layout has none.
   std::size_t yaw_dim() const {
@@ -171,7 +173,7 @@ class PoseLayout {
     if (has_steps())
       differ_track(out, dof(), {yaw_dim(), root_position_ ? std::optional(position_dim()) : std::nullopt},
                    step);
-    if (has_support() && root_position_) move_to_support(motion, out, step);
+    if (has_support()) move_to_support(motion, out, step);
     return out;
   }
 
@@ -269,7 +271,7 @@ class PoseLayout {
                     std::span<const Vec3> positions, RootTrack& at) const {
     Vec3 step = root_position_ ? Vec3{pose[dof() - 3], pose[dof() - 2], pose[dof() - 1]} : Vec3{};
     const double turn = pose[yaw_dim()];
-    if (has_support() && root_position_) {
+    if (has_support()) {
       std::vector<Vec3> joints = joints_about_root(skeleton_, root_, rotations, positions);
       step[1] = lifted(step[1]) - support_height(joints, softness_);
       if (!at.joints.empty()) {
