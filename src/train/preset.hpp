@@ -38,9 +38,11 @@ inline void apply(TrainingPreset preset, DvganArgs& args, const CLI::App& verb) 
       std::optional(!steady     ? motion::RootRotation::expmap
                     : recurrent ? motion::RootRotation::velocity
                                 : motion::RootRotation::support));
-  set("--critic-sees", args.training.critic.sees, steady ? CriticSees::both : CriticSees::rotations);
-  set("--loss-smooth", args.training.body.smooth, steady ? 1.0 : 0.0);
-  set("--loss-contact", args.training.body.contact, steady ? 1.0 : 0.0);
+  // Velocities need two frames, jerk needs four.
+  const bool moves = steady && args.data.frames >= 2, jerks = steady && args.data.frames >= 4;
+  set("--critic-sees", args.training.critic.sees, moves ? CriticSees::both : CriticSees::rotations);
+  set("--loss-smooth", args.training.body.smooth, jerks ? 1.0 : 0.0);
+  set("--loss-contact", args.training.body.contact, jerks ? 1.0 : 0.0);
   set("--ema", args.training.ema, steady ? 0.999 : 0.0);
 }
 

@@ -55,6 +55,8 @@ class BodyLosses {
 
   /// The loss, [1], of generated beside real motion, both normalised, [N, B, dof]. Needs 4 frames.
   Var operator()(const Var& made, const Var& real) const {
+    require(made.dim(0) >= 4, "BodyLosses: motion of ", made.dim(0),
+            " frames, expected at least 4: jerk is a third difference");
     const Var fake = view_(made), truth = view_(real.detach());
     Var loss = zeros(made.context(), {1});
     if (options_.smooth > 0) {
