@@ -93,7 +93,7 @@ static inline void turn_gradient(Turn t, Matrix d, realv out[3]) {
     out[e] = t.a * twist[e] + stretch * r[e] + t.b * (mixed[e] - 2 * trace * r[e]);
 }
 
-/// The gradient of q [3 * joints, poses] for the gradient `above` [3 * joints, poses] of the positions.
+/// The gradient of q [3 * joints, poses] for the gradient g [3 * joints, poses] of the positions.
 /// Scratch: 12 * joints numbers per pose, the gradients of positions and global rotations.
 kernel void joint_positions_grad(global const real* q, uint q0, global const real* offsets, uint offsets0,
                                  global const int* parents, global const real* rotations, uint rotations0,

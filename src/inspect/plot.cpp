@@ -1,11 +1,9 @@
 // motiongan plot: draws the logs of training runs, and describes the clips that they were trained on.
-#include <array>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "inspect/plot_log.hpp"
-#include "motiongan/formats/tab_lines.hpp"
 #include "motiongan/io/fields_json.hpp"
 #include "motiongan/train/run.hpp"
 #include "motiongan/view/player.hpp"

@@ -35,19 +35,21 @@ class AttentionGenerator {
   Var operator()(const Var& prior, const Var& classes, const Var& noise = {}) const {
     const Var made =
         decode_(residual_block(block1_, attend(attention_, before_attention(prior, classes, noise)), true));
-    return options_.continues ? made + fading_frames(prior) : made;
+    return options_.continues ? made + fading_frames(prior, fading(prior.context(), prior.dim(0))) : made;
   }
 
-  /// The prior's last frame times (T - t) / (T + 1) in frame t = 0 .. T - 1, [T, B, dof]: what the output is
-  /// added to if it continues. The next second thus begins where the last one ends, and yet ends in a pose of
-  /// its own: errors do not add up over the seconds.
-  static Var fading_frames(const Var& prior) {
-    const std::size_t frames = prior.dim(0);
+  /// What the output is added to if it continues, [T, B, dof]: the prior's last frame times `fading`. The
+  /// next second thus begins where the last one ends, and yet ends in a pose of its own.
+  static Var fading_frames(const Var& prior, const Var& fading) {
+    return broadcast_to(fading, prior.shape()) *
+           broadcast_to(slice(prior, 0, prior.dim(0) - 1, 1), prior.shape());
+  }
+  /// (T - t) / (T + 1) in frame t = 0 .. T - 1, [T, 1, 1].
+  static Var fading(const Context& context, std::size_t frames) {
     std::vector<double> weights;
     for (std::size_t t = 0; t < frames; ++t)
       weights.push_back(static_cast<double>(frames - t) / static_cast<double>(frames + 1));
-    const Var fading = Var::constant(Tensor::from(prior.context(), {frames, 1, 1}, weights));
-    return broadcast_to(fading, prior.shape()) * broadcast_to(slice(prior, 0, frames - 1, 1), prior.shape());
+    return Var::constant(Tensor::from(context, {frames, 1, 1}, weights));
   }
 
   /// Attention weights [B, T, T]: row j is what frame j attends to. Throws Error if the model has no

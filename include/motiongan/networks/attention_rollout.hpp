@@ -62,7 +62,7 @@ class AttentionRollout {
     decode_.c = Tensor(context_, {frames_, batch_, options_.dof});
     if (options_.continues) {
       const NoGrad values_only;
-      decode_.residual = AttentionGenerator::fading_frames(Var::constant(prior)).value();
+      decode_.residual = AttentionGenerator::fading_frames(Var::constant(prior), fading_).value();
       decode_.residual_ld = options_.dof;
     }
     compute(decode_);
@@ -172,6 +172,7 @@ class AttentionRollout {
     place(second_[1], between_, rectified_, batch * hidden);
     add(second_[1], inner_ > 0 ? state_ : other_);
     place(decode_, rectified_, {}, 0);
+    if (options_.continues) fading_ = AttentionGenerator::fading(context_, frames);
     frames_ = frames, batch_ = batch;
   }
 
@@ -188,6 +189,7 @@ class AttentionRollout {
   bool in_16_bits_ = false;
   std::size_t inner_ = 0;  // channels of query, key and value; 0: no attention
   std::size_t frames_ = 0, batch_ = 0, pieces_ = 1;
+  Var fading_;                         // if the generator continues
   Tensor rows_, rectified_, between_;  // [frames + 2, batch, channels], first and last frame zero
   Tensor state_, other_;               // [frames * batch, hidden]
   Tensor parts_to_, scratch_, out_weight_, out_bias_;
