@@ -180,10 +180,7 @@ int complete(const CompleteArgs& args) {
                               .seed = args.seed,
                               .sample = static_cast<std::uint32_t>(args.first_sample + i),
                               .prior = &prior.seed});
-  if (args.cleaning.on())
-    job.finish = [&](motion::Motion motion) {
-      return args.cleaning.apply(std::move(motion), prior.seed.frames);
-    };
+  if (args.cleaning.on()) job.clean = args.cleaning.settings(prior.seed.frames);
   catch_signals();
   const auto made = write_streamed(model, job);
   if (!made) return stopped(0);

@@ -63,8 +63,7 @@ std::optional<std::vector<motion::Motion>> write_long(const Dvgan& model, const 
                               .seed = args.options.seed,
                               .sample = static_cast<std::uint32_t>(args.options.first_sample + i)});
   if (!args.html.empty() || !args.png.empty()) job.kept = shown_frames(model.format().rate, args.rate);
-  if (args.cleaning.on())
-    job.finish = [&](motion::Motion motion) { return args.cleaning.apply(std::move(motion)); };
+  if (args.cleaning.on()) job.clean = args.cleaning.settings();
   return write_streamed(model, job, drift);
 }
 

@@ -1,8 +1,9 @@
 // Writes the motion of RNN models while it is generated.
 #include "generate/streaming.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <memory>
+#include <list>
 
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/formats/bvh_stream.hpp"
@@ -29,11 +30,45 @@ class GrowingFile {
   motion::BvhStreamWriter writer_;
 };
 
-struct Growing {
-  CharacterId id;
-  std::unique_ptr<GrowingFile> file;
-  DriftMeter drift;
-  motion::Motion kept;
+/// One motion of a job.
+class Growing {
+ public:
+  Growing(CharacterId id, const fs::path& path, const motion::Skeleton& skeleton, double rate,
+          const StreamJob& job, std::size_t frames)
+      : id_(id),
+        scale_(job.scale),
+        keep_(job.kept),
+        file_(path, motion::scaled(skeleton, job.scale), frames, rate, job.rate > 0 ? job.rate : rate) {
+    if (job.clean) cleaner_.emplace(*job.clean);
+  }
+
+  CharacterId id() const { return id_; }
+
+  void append(const motion::Motion& piece) { write(cleaner_ ? cleaner_->push(piece) : piece); }
+
+  /// Completes the file and returns the first frames of the motion.
+  motion::Motion finish() {
+    if (cleaner_) write(cleaner_->finish());
+    file_.finish();
+    return std::move(kept_);
+  }
+
+ private:
+  void write(const motion::Motion& piece) {
+    if (piece.frames == 0) return;
+    file_.append(motion::scaled(piece, scale_));
+    const std::size_t wanted = std::min(piece.frames, keep_ - kept_.frames);
+    if (wanted == 0) return;
+    motion::Motion first = slice(piece, 0, wanted);
+    kept_ = kept_.frames == 0 ? std::move(first) : join(std::move(kept_), first);
+  }
+
+  CharacterId id_;
+  double scale_;
+  std::size_t keep_;  ///< frames
+  GrowingFile file_;
+  std::optional<motion::CleanStream> cleaner_;
+  motion::Motion kept_;
 };
 
 /// Runs the job for `count` motions from `first` on. Returns false if a signal requested a stop.
@@ -45,49 +80,23 @@ bool write_some(const Dvgan& model, const StreamJob& job, std::size_t first, std
   MotionStream stream(model);
   const std::vector<CharacterId> ids = stream.add(std::vector(
       job.characters.begin() + offset, job.characters.begin() + offset + static_cast<std::ptrdiff_t>(count)));
-  const bool begun = job.before.frames > 0;
-  const std::size_t keep = job.finish ? job.before.frames + job.frames : job.kept;
-  std::vector<Growing> growing;
+  const motion::Skeleton& skeleton = job.before.frames > 0 ? job.before.skeleton : model.format().skeleton();
+  std::list<Growing> growing;
+  std::vector<DriftMeter> drifts(count, DriftMeter(model.format()));
   for (std::size_t i = 0; i < count; ++i) {
-    const motion::Skeleton& skeleton = begun ? job.before.skeleton : model.format().skeleton();
-    growing.push_back({ids[i],
-                       job.finish ? nullptr
-                                  : std::make_unique<GrowingFile>(
-                                        job.files[first + i], scaled(skeleton, job.scale),
-                                        job.before.frames + job.frames, rate, job.rate > 0 ? job.rate : rate),
-                       DriftMeter(model.format()),
-                       {}});
-    if (!begun) continue;
-    if (!job.finish) growing.back().file->append(motion::scaled(job.before, job.scale));
-    growing.back().kept = slice(job.before, 0, std::min(keep, job.before.frames));
+    growing.emplace_back(ids[i], job.files[first + i], skeleton, rate, job, job.before.frames + job.frames);
+    if (job.before.frames > 0) growing.back().append(job.before);
   }
   for (std::size_t at = 0; at < job.frames; at += at_a_time) {
     if (stop_requested()) return false;
     const std::size_t frames = std::min(at_a_time, job.frames - at);
     stream.step(frames);
-    for (Growing& g : growing) {
-      const motion::Motion piece = stream.motion(g.id);
-      if (!job.finish) g.file->append(motion::scaled(piece, job.scale));
-      if (drift != nullptr) g.drift.add(stream.poses(g.id), frames);
-      const std::size_t wanted = std::min(frames, keep - std::min(keep, g.kept.frames));
-      if (wanted == 0) continue;
-      g.kept =
-          g.kept.frames == 0 ? slice(piece, 0, wanted) : join(std::move(g.kept), slice(piece, 0, wanted));
-    }
+    for (Growing& g : growing) g.append(stream.motion(g.id()));
+    for (std::size_t i = 0; drift != nullptr && i < count; ++i) drifts[i].add(stream.poses(ids[i]), frames);
     made(frames);
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    Growing& g = growing[i];
-    if (job.finish) {
-      g.kept = job.finish(std::move(g.kept));
-      const motion::Motion sized = motion::scaled(g.kept, job.scale);
-      motion::write_bvh(job.files[first + i], job.rate > 0 ? motion::resample(sized, job.rate) : sized);
-    } else {
-      g.file->finish();
-    }
-    if (drift != nullptr) drift->add(g.drift);
-    all_kept.push_back(std::move(g.kept));
-  }
+  for (Growing& g : growing) all_kept.push_back(g.finish());
+  for (std::size_t i = 0; drift != nullptr && i < count; ++i) drift->add(drifts[i]);
   return true;
 }
 

@@ -1,9 +1,9 @@
 // Writes the motion of RNN models while it is generated; shared by generate and complete.
 #pragma once
-#include <functional>
 #include <optional>
 
 #include "generate/drift_report.hpp"
+#include "motiongan/motion/clean_stream.hpp"
 #include "motiongan/sample/motion_stream.hpp"
 #include "shared/command.hpp"
 #include "shared/show.hpp"
@@ -18,9 +18,7 @@ struct StreamJob {
   double rate = 0;                   ///< of the files, by interpolation; 0: the model's
   double scale = 1;                  ///< of the files' lengths to the model's
   std::size_t kept = 0;              ///< frames of each to return, at the model's rate
-  /// If given, each whole motion goes through it before it is written and returned; it is then kept in
-  /// memory.
-  std::function<motion::Motion(motion::Motion)> finish = {};
+  std::optional<motion::CleanOptions> clean = {};  ///< clean up what is written and returned
 };
 
 /// Generates the motions in pieces and writes them, in memory that does not depend on their length; shows

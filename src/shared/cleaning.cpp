@@ -7,14 +7,17 @@
 
 namespace motiongan::command {
 
-motion::Motion Cleaning::apply(motion::Motion motion, std::size_t given) const {
-  if (!on()) return motion;
+motion::CleanOptions Cleaning::settings(std::size_t given) const {
   const auto has = [&](const char* part) {
     return std::find(parts.begin(), parts.end(), part) != parts.end();
   };
-  motion::CleanOptions now = options;
-  now.feet = has("feet"), now.smooth = has("smooth"), now.given = given;
-  return motion::clean(motion, now);
+  motion::CleanOptions out = options;
+  out.feet = has("feet"), out.smooth = has("smooth"), out.given = given;
+  return out;
+}
+
+motion::Motion Cleaning::apply(motion::Motion motion, std::size_t given) const {
+  return on() ? motion::clean(motion, settings(given)) : motion;
 }
 
 namespace {

@@ -11,6 +11,9 @@ struct Cleaning {
 
   bool on() const { return !parts.empty(); }
 
+  /// What is to be cleaned up; the first `given` frames stay as they are.
+  motion::CleanOptions settings(std::size_t given = 0) const;
+
   /// The motion cleaned up, if anything is to be; the first `given` frames stay as they are.
   motion::Motion apply(motion::Motion motion, std::size_t given = 0) const;
 };

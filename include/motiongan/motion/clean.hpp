@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -76,6 +77,17 @@ inline std::vector<FootContact> foot_contacts(const std::vector<Vec3>& places, d
   return out;
 }
 
+/// The height of the floor that the feet of find_feet() stand on: the 5th percentile of their heights, so
+/// that some outliers below do not count. In the file's unit. Throws Error if there are no feet.
+inline double floor_under(const Motion& motion, std::span<const std::string> foot_joints = {}) {
+  const std::vector<Vec3> places = joint_positions(motion);
+  std::vector<double> heights;
+  for (const std::size_t foot : find_feet(motion.skeleton, foot_joints))
+    for (std::size_t f = 0; f < motion.frames; ++f)
+      heights.push_back(places[f * motion.skeleton.size() + foot][1]);
+  return percentile(std::move(heights), 0.05);
+}
+
 namespace clean_detail {
 
 /// Largest (sign 1) or smallest (sign -1) value within `reach` frames of each frame.
@@ -116,13 +128,9 @@ class Cleaner {
 
   Motion run() {
     if (motion_.frames < 3) return std::move(motion_);
-    std::vector<std::vector<Vec3>> feet = places();
-    std::vector<double> heights;
-    for (const auto& foot : feet)
-      for (const Vec3& p : foot) heights.push_back(p[1]);
-    floor_ = options_.floor.value_or(percentile(std::move(heights), 0.05));
-    put_down(feet);
-    feet = places();
+    floor_ = options_.floor.value_or(floor_under(motion_, options_.foot_joints));
+    put_down(places());
+    const std::vector<std::vector<Vec3>> feet = places();
     std::vector<std::vector<Vec3>> moves;  // of each foot, in each frame
     for (const auto& foot : feet) moves.push_back(holding(foot));
     lower_for(moves);
@@ -232,16 +240,23 @@ class Cleaner {
   double metre_ = 1, floor_ = 0;
 };
 
-/// `to`, with the first `given` frames of `from` and a smooth change over `blend` frames after them.
-inline Motion after_given(const Motion& from, Motion to, std::size_t given, double blend) {
-  for (std::size_t f = 0; f < to.frames; ++f) {
-    const double t = f < given ? 0 : std::min((static_cast<double>(f - given) + 1) / (blend + 1), 1.0);
+/// Moves frame f of `to` towards the same frame of `from`, which it becomes where `share` is 0.
+inline void blend_frame(const Motion& from, Motion& to, std::size_t f, double share) {
+  for (std::size_t j = 0; j < to.skeleton.size(); ++j) {
+    to.rotation(f, j) = slerp(from.rotation(f, j), to.rotation(f, j), share);
+    to.position(f, j) = add(scale(from.position(f, j), 1 - share), scale(to.position(f, j), share));
+  }
+}
+
+/// `to`, with the first `given` frames of `from` and a smooth change over `blend` frames after them. Both
+/// begin with frame `first` of a longer motion, which `given` counts in; 0: `to` as it is.
+inline Motion after_given(const Motion& from, Motion to, std::size_t given, double blend,
+                          std::size_t first = 0) {
+  for (std::size_t f = 0; given > 0 && f < to.frames; ++f) {
+    const double t =
+        first + f < given ? 0 : std::min((static_cast<double>(first + f - given) + 1) / (blend + 1), 1.0);
     if (t == 1) break;
-    const double share = ease(t);
-    for (std::size_t j = 0; j < to.skeleton.size(); ++j) {
-      to.rotation(f, j) = slerp(from.rotation(f, j), to.rotation(f, j), share);
-      to.position(f, j) = add(scale(from.position(f, j), 1 - share), scale(to.position(f, j), share));
-    }
+    blend_frame(from, to, f, ease(t));
   }
   return to;
 }
@@ -256,9 +271,7 @@ inline Motion clean(const Motion& motion, const CleanOptions& options = {}) {
   check(options);
   Motion out = options.smooth ? low_pass(motion, options.cutoff) : motion;
   if (options.feet) out = clean_detail::Cleaner(std::move(out), options).run();
-  return options.given == 0 ? out
-                            : clean_detail::after_given(motion, std::move(out), options.given,
-                                                        2 * options.blend * motion.rate);
+  return clean_detail::after_given(motion, std::move(out), options.given, 2 * options.blend * motion.rate);
 }
 
 }  // namespace motiongan::motion
