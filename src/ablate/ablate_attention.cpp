@@ -90,7 +90,7 @@ int run_ablation(AblateArgs args, const CLI::App& verb) {
 void add_training_options(CLI::App& verb, AblationTraining& a) {
   const char* group = "Training, the same for all";
   add_budget_options(verb, a.budget, "for each variant", group);
-  add_options(verb, fields_of(a.model), group, {.only = {"hidden", "continues"}});
+  add_options(verb, fields_of(a.model), group, {.only = {"hidden", "continues", "exact_bones"}});
   add_options(verb, fields_of(a.training), group,
               {.without = {"iterations", "weight_clip", "skeleton_vectors", "critic_classes", "balanced"}});
   // A loss that a variant leaves out must be on in the others.

@@ -1,6 +1,7 @@
-// --preset: the options of `train dvgan` that go beyond the paper, together.
+// --preset: the options of `train dvgan` and `train attention` that go beyond the papers, together.
 #pragma once
 #include "motiongan/motion/feet.hpp"
+#include "motiongan/train/attention_trainer.hpp"
 #include "train/training.hpp"
 
 namespace motiongan::command {
@@ -8,30 +9,39 @@ namespace motiongan::command {
 /// What --preset sets where the command line does not.
 enum class TrainingPreset {
   steady,  ///< what measures best, see docs/training.md
-  paper    ///< as Lin & Amer: exponential maps, and the critic sees them alone; the last weights generate
+  paper    ///< as the model's paper has it; the last weights generate
 };
 constexpr NameTable<TrainingPreset, 2> enum_names(TrainingPreset) {
   return {{{TrainingPreset::steady, "steady"}, {TrainingPreset::paper, "paper"}}};
 }
 
-inline void add_preset_option(CLI::App& verb, TrainingPreset& preset) {
+/// `text` says what the presets are.
+inline void add_preset_option(CLI::App& verb, TrainingPreset& preset, const std::string& text) {
   std::map<std::string, TrainingPreset> names;
   for (const auto& [value, name] : enum_names(preset)) names.emplace(name, value);
-  verb.add_option(
-          "--preset", preset,
-          "what options are where none is given: steady: --root-rotation support (velocity for an RNN "
-          "generator), --critic-sees both, --loss-smooth 1, --loss-contact 1, --ema 0.999; paper: "
-          "expmap, rotations, 0, 0, 0 [steady]")
+  verb.add_option("--preset", preset, "what options are where none is given: " + text + " [steady]")
       ->transform(CLI::CheckedTransformer(names))
       ->type_name("steady|paper")
       ->group("Training");
+}
+
+inline constexpr const char* dvgan_presets =
+    "steady: --root-rotation support (velocity for an RNN generator), --critic-sees both, --loss-smooth 1, "
+    "--loss-contact 1, --ema 0.999; paper: expmap, rotations, 0, 0, 0";
+inline constexpr const char* attention_presets =
+    "steady: --exact-bones, --from-last-pose, --critic-directions, --ema 0.999; paper: none of them";
+
+/// Sets an option that the command line of `verb` does not give.
+template <class T, class U>
+void set_default(const CLI::App& verb, const char* option, T& member, U value) {
+  if (!given(verb, option)) member = value;
 }
 
 /// Sets the options of the preset that the command line of `verb` does not give.
 inline void apply(TrainingPreset preset, DvganArgs& args, const CLI::App& verb) {
   const bool steady = preset == TrainingPreset::steady;
   const auto set = [&](const char* option, auto& member, auto value) {
-    if (!given(verb, option)) member = value;
+    set_default(verb, option, member, value);
   };
   const bool recurrent = args.model.generator == GeneratorKind::rnn;
   set("--root-rotation", args.data.root_rotation,
@@ -44,6 +54,17 @@ inline void apply(TrainingPreset preset, DvganArgs& args, const CLI::App& verb) 
   set("--loss-smooth", args.training.body.smooth, jerks ? 1.0 : 0.0);
   set("--loss-contact", args.training.body.contact, jerks ? 1.0 : 0.0);
   set("--ema", args.training.ema, steady ? 0.999 : 0.0);
+}
+
+/// The same for `train attention`. The LSTM baseline has the paper's form alone.
+inline void apply(TrainingPreset preset, ActionGanOptions& model, AttentionTrainOptions& training,
+                  const CLI::App& verb) {
+  if (model.generator == ActionGenerator::lstm) return;
+  const bool steady = preset == TrainingPreset::steady;
+  set_default(verb, "--exact-bones", model.exact_bones, steady);
+  set_default(verb, "--from-last-pose", model.continues, steady);
+  set_default(verb, "--critic-directions", training.critic_directions, steady);
+  set_default(verb, "--ema", training.ema, steady ? 0.999 : 0.0);
 }
 
 /// Leaves out the contact loss that the preset asks for where the skeleton has no feet.

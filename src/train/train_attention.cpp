@@ -4,6 +4,7 @@
 #include "shared/action_data.hpp"
 #include "shared/shell.hpp"
 #include "train/action_training.hpp"
+#include "train/preset.hpp"
 #include "train/run_start.hpp"
 
 namespace motiongan::command {
@@ -11,6 +12,7 @@ namespace {
 
 /// The options that define a run. Its checkpoint stores them, so --resume needs none of them.
 struct AttentionArgs {
+  TrainingPreset preset = TrainingPreset::steady;
   ActionDataArgs data;
   ActionGanOptions model;
   AttentionTrainOptions training;
@@ -98,6 +100,7 @@ int train_attention(AttentionArgs args, const CLI::App& verb) {
                   take_note(fields_of(args), verb, note, from, options_of_action_clips);
                 });
   fill_in_choices(args.data);
+  if (!args.run.resume) apply(args.preset, args.model, args.training, verb);
   args.model.seed = args.training.seed;
   if (args.model.generator == ActionGenerator::lstm) check_baseline(args, verb);
   args.training.adam.schedule.fix(args.training.iterations);
@@ -137,6 +140,7 @@ const Verb train_attention_verb{
           "saves and stops; --resume continues as if the run had never stopped, and needs only --save.");
       const auto args = std::make_shared<AttentionArgs>();
       AttentionArgs& a = *args;
+      add_preset_option(*verb, a.preset, attention_presets);
       add_action_data_options(*verb, a.data, true);
       add_options(*verb, fields_of(a.model), "Model");
       add_options(*verb, fields_of(a.training), "Training");

@@ -70,7 +70,7 @@ const Verb train_dvgan_verb{
       add_captioned_data_options(*verb, a);
       add_options(*verb, fields_of(a.model), "Model");
       add_options(*verb, fields_of(a.training), "Training");
-      add_preset_option(*verb, args->preset);
+      add_preset_option(*verb, args->preset, dvgan_presets);
       add_run_options(*verb, a.run, "save/NAME, where NAME is that of FOLDER", true);
       verb->callback([&job, args, verb] {
         fill_in_procedural(*verb, args->procedural);

@@ -73,6 +73,19 @@ TEST_CASE("presets set what the command line does not") {
   // A resumed run keeps its options, whatever the preset would be.
   CHECK(call("train dvgan --resume --save paper --iterations 2").status == 0);
   CHECK(call("train dvgan clips --save x --preset fast" + tiny).status > 100);
+
+  const std::string actions =
+      " --procedural 51 --iterations 1 --frames 8 --rate 10 --hidden 8 --batch 4 --critic-steps 1 --save ";
+  REQUIRE(call("train attention" + actions + "a_steady").status == 0);
+  CHECK(options("a_steady", "training").find("\"critic_directions\":true") != std::string::npos);
+  CHECK(options("a_steady", "options").find("\"exact_bones\":true") != std::string::npos);
+  CHECK(options("a_steady", "options").find("\"continues\":true") != std::string::npos);
+  REQUIRE(call("train attention --preset paper --exact-bones" + actions + "a_paper").status == 0);
+  CHECK(options("a_paper", "training").find("\"critic_directions\":false") != std::string::npos);
+  CHECK(options("a_paper", "options").find("\"exact_bones\":true") != std::string::npos);
+  CHECK(options("a_paper", "options").find("\"continues\":false") != std::string::npos);
+  CHECK(call("train attention --procedural 51 --iterations 1 --hidden 8 --model lstm --save a_lstm").status ==
+        0);
 }
 
 TEST_CASE("words that the model never saw: the nearest descriptions are named, --strict refuses") {

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <motiongan/networks/attention_rollout.hpp>
+#include <motiongan/procedural/procedural.hpp>
 
 #include "../support/messages.hpp"
 
@@ -100,6 +101,49 @@ TEST_CASE("a generator that continues adds its output to the prior's last frame,
       given = x.to_host<double>();
   for (std::size_t i = 0; i < poses.size(); ++i)
     CHECK(continued[i] == doctest::Approx(poses[i] + (6.0 - double(i / 15)) / 7 * given[5 * 15 + i % 15]));
+}
+
+TEST_CASE("with exact bones the rollout equals the generator, and keeps the lengths for an hour") {
+  for (const Precision precision : {Precision::f32, Precision::f64}) {
+    const Context& c = context(precision);
+    const motion::Motion walk = motion::procedural_motion(0, {.seconds = 1}).motion;
+    motion::PositionFormat format;
+    format.layout = motion::PositionLayout(walk.skeleton);
+    format.normalizer =
+        motion::Normalizer::fit(format.layout.encode(motion::joint_positions(walk)), format.layout.dof());
+    format.classes = {"walk", "run", "jump"};
+    const Bones bones(c, format);
+    const AttentionGenerator g(
+        Initializer(c, 3), {.dof = format.dof(), .classes = classes, .hidden = 16, .continues = true}, bones);
+    AttentionRollout rollout(g);
+    const std::size_t batch = 2, frames = 5;
+    const std::vector<float> poses = format.encode(motion::joint_positions(walk));
+    const Var given = Var::constant(Tensor::from(
+        c, {frames, batch, format.dof()},
+        std::vector<float>(poses.begin(),
+                           poses.begin() + std::ptrdiff_t(frames * batch) * std::ptrdiff_t(format.dof()))));
+    const auto lengths = [&](const Var& motion) {
+      const NoGrad values_only;
+      return bones.lengths(bones.vectors(slice(motion, 0, frames - 1, 1))).value();
+    };
+    Tensor fast = given.value(), plain = fast;
+    const Tensor y = one_hot(c, batch);
+    for (int step = 0; step < 3; ++step) {
+      const NoGrad values_only;
+      fast = rollout.step(fast, y);
+      plain = g(Var::constant(plain), Var::constant(y)).value();
+      CHECK(difference(fast, plain) < (precision == Precision::f64 ? 1e-12 : 1e-5));
+    }
+    CHECK(difference(lengths(Var::constant(fast)), lengths(given)) < 1e-5);
+    if (precision == Precision::f64) continue;
+    for (int step = 0; step < 3600; ++step) fast = rollout.step(fast, y);
+    CHECK(difference(lengths(Var::constant(fast)), lengths(given)) < 1e-3);
+    const Var alone = slice(Var::constant(given.value()), 1, 1, 1);
+    Tensor one = alone.value(), both = given.value();
+    for (int step = 0; step < 3; ++step)
+      one = rollout.step(one, one_hot(c, 1, 1)), both = rollout.step(both, y);
+    CHECK(one.to_host() == slice(Var::constant(both), 1, 1, 1).value().to_host());
+  }
 }
 
 TEST_CASE("a sample is the same alone and in a batch, bit for bit") {

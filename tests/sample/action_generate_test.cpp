@@ -1,6 +1,7 @@
 // Whole clips of the attention model: schedules, priors, synthetic clips.
 #include <doctest/doctest.h>
 
+#include <filesystem>
 #include <motiongan/procedural/procedural.hpp>
 #include <motiongan/sample/action_generate.hpp>
 
@@ -134,4 +135,31 @@ TEST_CASE("a synthetic clip has the real one's prior, class and length") {
   const ActionGan model(context(), data().format, {.hidden = 8});
   CHECK_THROWS_WITH_AS(synthesise(model, other, other.train), doctest::Contains("there is no class 'kick'"),
                        Error);
+}
+
+TEST_CASE("bones keep the prior's lengths if they are exact, also from a file; the LSTM has none") {
+  const Context& c = context();
+  ActionGan model(c, data().format, {.hidden = 8, .continues = true, .exact_bones = true});
+  const auto file = std::filesystem::temp_directory_path() / "motiongan_exact_bones.safetensors";
+  model.save(file);
+  const ActionGan loaded = ActionGan::load(c, file);
+  std::filesystem::remove(file);
+  CHECK(loaded.options().exact_bones);
+  const ActionPrior prior = data().prior(data().train[0]);
+  const auto made = model.generate({prior}, "walk:10s,run:2s"),
+             again = loaded.generate({prior}, "walk:10s,run:2s");
+  CHECK(made[0].positions == again[0].positions);
+  const std::size_t joints = model.format().skeleton().size(), frames = made[0].positions.size() / joints;
+  REQUIRE(frames > 100);
+  for (const motion::Bone& bone : model.format().bones()) {
+    const auto length_in = [&](std::size_t f) {
+      return apart(made[0].positions[f * joints + bone.joint], made[0].positions[f * joints + bone.parent]);
+    };
+    for (std::size_t f = 0; f < frames; ++f)
+      CHECK(length_in(f) == doctest::Approx(length_in(0)).epsilon(1e-3));
+  }
+  CHECK(says(message_of([&] {
+               ActionGan(c, data().format, {.generator = ActionGenerator::lstm, .exact_bones = true});
+             }),
+             "keeps bones"));
 }

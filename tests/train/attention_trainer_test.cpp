@@ -158,6 +158,10 @@ TEST_CASE("every option changes the result") {
   all.insert(trained(o, {.hidden = 8}));
   all.insert(trained(o, {.hidden = 8, .noise_dim = 3}));
   all.insert(trained(o, {.hidden = 8, .attention = false}));
+  all.insert(trained(o, {.hidden = 8, .continues = true}));
+  all.insert(trained(o, {.hidden = 8, .exact_bones = true}));
+  o.critic_directions = true;
+  all.insert(trained(o, {.hidden = 8}));
   o.critic_classes = true;
   all.insert(trained(o, {.hidden = 8}));
   o.rollouts = 3;
@@ -166,7 +170,7 @@ TEST_CASE("every option changes the result") {
   all.insert(trained(o, {.hidden = 8}));
   o.generator_steps = 2;
   all.insert(trained(o, {.hidden = 8}));
-  CHECK(all.size() == 7);
+  CHECK(all.size() == 10);
 }
 
 TEST_CASE("a resumed run equals an uninterrupted one bit for bit") {
@@ -175,7 +179,8 @@ TEST_CASE("a resumed run equals an uninterrupted one bit for bit") {
   for (const bool clipped : {false, true}) {
     AttentionTrainOptions options = small_options;
     options.weight_clip = clipped ? 0.05 : 0;
-    const ActionGanOptions gan{.hidden = 8, .noise_dim = 2};
+    options.critic_directions = clipped;
+    const ActionGanOptions gan{.hidden = 8, .noise_dim = 2, .continues = clipped, .exact_bones = clipped};
     Run unbroken(options, gan), first(options, gan), second(options, gan);
     for (int i = 0; i < 3; ++i) unbroken.trainer.iterate();
     first.trainer.iterate();

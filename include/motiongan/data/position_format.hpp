@@ -110,6 +110,42 @@ struct PositionFormat {
     return out;
   }
 
+  /// How many of the values that a network sees are places of joints; the root's track follows.
+  std::size_t kept_places() const {
+    const auto& kept = normalizer.kept();
+    return static_cast<std::size_t>(std::lower_bound(kept.begin(), kept.end(), 3 * skeleton().size()) -
+                                    kept.begin());
+  }
+
+  /// The linear map back from vectors of bones() to normalised places: place_map() * vectors + place_shift()
+  /// are the first kept_places() values of a pose. [kept_places(), 3 * bones], row-major.
+  std::vector<double> place_map() const {
+    const std::vector<Bone> all = bones();
+    std::vector<double> out(3 * all.size() * kept_places(), 0.0);
+    for (std::size_t k = 0; k < kept_places(); ++k) {
+      const std::size_t dim = normalizer.kept()[k];
+      for (int j = static_cast<int>(dim / 3); j > 0;
+           j = skeleton().joints[static_cast<std::size_t>(j)].parent) {
+        const auto bone = std::find_if(all.begin(), all.end(),
+                                       [&](const Bone& b) { return b.joint == static_cast<std::size_t>(j); });
+        if (bone == all.end()) continue;
+        const auto b = static_cast<std::size_t>(bone - all.begin());
+        out[k * 3 * all.size() + 3 * b + dim % 3] = 1 / normalizer.std()[dim];
+      }
+    }
+    return out;
+  }
+
+  /// The normalised places of a body without any length, [kept_places()].
+  std::vector<double> place_shift() const {
+    std::vector<double> out;
+    for (std::size_t k = 0; k < kept_places(); ++k) {
+      const std::size_t dim = normalizer.kept()[k];
+      out.push_back(-normalizer.mean()[dim] / normalizer.std()[dim]);
+    }
+    return out;
+  }
+
   /// World positions [frames, joints] as a network sees them, [frames, dof()].
   std::vector<float> encode(std::span<const Vec3> positions) const {
     return normalizer.normalize<float>(layout.encode(positions));

@@ -29,7 +29,7 @@ struct AblationVariant {
   ActionGanOptions model(ActionGanOptions options) const {
     options.generator = lstm ? ActionGenerator::lstm : ActionGenerator::attention;
     options.attention = options.attention && attention;
-    if (lstm) options.noise_dim = 0, options.continues = false;
+    if (lstm) options.noise_dim = 0, options.continues = options.exact_bones = false;
     return options;
   }
   /// The variant's training options, from those of the full model.

@@ -31,6 +31,7 @@ struct ActionGanOptions {
   std::size_t noise_dim = 0;  ///< noise channels next to the class; the paper: 0; the LSTM must have 0
   bool attention = true;      ///< self-attention in generator, critic and classifier
   bool continues = false;     ///< generate what is added to the prior's last pose, which fades; the paper: no
+  bool exact_bones = false;   ///< generated bones keep the lengths of the prior's last pose; the paper: no
   std::uint64_t seed = 1;     ///< seed of the initial weights
 
   void list_fields(FieldList& list) {
@@ -45,6 +46,9 @@ struct ActionGanOptions {
                          .help = "generate what is added to the given second's last pose, which fades over "
                                  "the next; the paper: off",
                          .option = "--from-last-pose"});
+    list.add(exact_bones, {.key = "exact_bones",
+                           .help = "give generated bones the lengths of the given second's last pose; the "
+                                   "paper: off"});
     list.add(noise_dim, {.key = "noise_dim",
                          .help = "noise channels next to the class; the paper: 0",
                          .range = Range::between(0, 65536),
@@ -154,13 +158,17 @@ class ActionGan {
     format.check();
     const Initializer init(context, options.seed);
     if (options.generator == ActionGenerator::attention)
-      return AttentionGenerator(init, {.dof = format.dof(),
-                                       .classes = format.classes.size(),
-                                       .hidden = options.hidden,
-                                       .noise_dim = options.noise_dim,
-                                       .attention = options.attention,
-                                       .continues = options.continues});
-    require(!options.continues, "the LSTM baseline generates poses: it has no form that continues");
+      return AttentionGenerator(
+          init,
+          {.dof = format.dof(),
+           .classes = format.classes.size(),
+           .hidden = options.hidden,
+           .noise_dim = options.noise_dim,
+           .attention = options.attention,
+           .continues = options.continues},
+          options.exact_bones ? std::optional<Bones>(std::in_place, context, format) : std::nullopt);
+    require(!options.continues && !options.exact_bones,
+            "the LSTM baseline generates poses: it has no form that continues or keeps bones");
     require(options.noise_dim == 0, "the LSTM baseline takes no noise: noise_dim is ", options.noise_dim,
             ", expected 0");
     return LstmBaseline(init,

@@ -1,6 +1,7 @@
 // The generator of the attention WGAN-GP (Malek-Podjaski & Deligianni).
 #pragma once
 #include "motiongan/networks/attention_block.hpp"
+#include "motiongan/networks/bones.hpp"
 
 namespace motiongan {
 
@@ -17,8 +18,11 @@ struct AttentionGeneratorOptions {
 /// `block.1` -> ReLU -> `decode`.
 class AttentionGenerator {
  public:
-  /// Throws Error if dof, classes or hidden is 0.
-  AttentionGenerator(Initializer init, const AttentionGeneratorOptions& options) : options_(options) {
+  /// With `bones`, generated bones are as long as those of the prior's last pose; the paper: without. Throws
+  /// Error if dof, classes or hidden is 0.
+  AttentionGenerator(Initializer init, const AttentionGeneratorOptions& options,
+                     std::optional<Bones> bones = std::nullopt)
+      : options_(options), bones_(std::move(bones)) {
     require(options.dof > 0 && options.classes > 0 && options.hidden > 0,
             "AttentionGenerator: dof, classes and hidden must be positive");
     encode_ = Conv1d(init, options.dof + options.classes + options.noise_dim, options.hidden, 3);
@@ -35,14 +39,22 @@ class AttentionGenerator {
   Var operator()(const Var& prior, const Var& classes, const Var& noise = {}) const {
     const Var made =
         decode_(residual_block(block1_, attend(attention_, before_attention(prior, classes, noise)), true));
-    return options_.continues ? made + fading_frames(prior, fading(prior.context(), prior.dim(0))) : made;
+    return with_exact_bones(prior, options_.continues
+                                       ? made + fading_frames(prior, fading(prior.context(), prior.dim(0)))
+                                       : made);
   }
+
+  /// What is generated after `prior` if `made` comes out of the network: its bones as long as those of the
+  /// prior's last pose, if the generator has exact bones.
+  Var with_exact_bones(const Var& prior, const Var& made) const {
+    return bones_ ? bones_->with_lengths_of(last_pose(prior), made) : made;
+  }
+  const std::optional<Bones>& bones() const { return bones_; }
 
   /// What the output is added to if it continues, [T, B, dof]: the prior's last frame times `fading`. The
   /// next second thus begins where the last one ends, and yet ends in a pose of its own.
   static Var fading_frames(const Var& prior, const Var& fading) {
-    return broadcast_to(fading, prior.shape()) *
-           broadcast_to(slice(prior, 0, prior.dim(0) - 1, 1), prior.shape());
+    return broadcast_to(fading, prior.shape()) * broadcast_to(last_pose(prior), prior.shape());
   }
   /// (T - t) / (T + 1) in frame t = 0 .. T - 1, [T, 1, 1].
   static Var fading(const Context& context, std::size_t frames) {
@@ -82,6 +94,8 @@ class AttentionGenerator {
   }
 
  private:
+  static Var last_pose(const Var& prior) { return slice(prior, 0, prior.dim(0) - 1, 1); }
+
   Var before_attention(const Var& prior, const Var& classes, const Var& noise) const {
     require(prior.value().rank() == 3 && prior.dim(2) == options_.dof && classes.dim(1) == options_.classes,
             "AttentionGenerator: prior ", prior.shape(), " and classes ", classes.shape(),
@@ -99,6 +113,7 @@ class AttentionGenerator {
   Conv1d encode_, decode_;
   Residual block0_, block1_;
   std::optional<SelfAttention> attention_;
+  std::optional<Bones> bones_;
   bool in_16_bits_ = false;
 };
 

@@ -15,7 +15,9 @@ namespace motiongan {
 class AttentionRollout {
  public:
   explicit AttentionRollout(const AttentionGenerator& generator)
-      : options_(generator.options()), context_(generator.encode().weight.context()) {
+      : options_(generator.options()),
+        bones_(generator.bones()),
+        context_(generator.encode().weight.context()) {
     const NoGrad values_only;
     in_16_bits_ = generator.in_16_bits();
     encode_ = convolution(generator.encode().weight, generator.encode().bias);
@@ -67,7 +69,11 @@ class AttentionRollout {
     }
     compute(decode_);
     decode_.residual = {};
-    return std::exchange(decode_.c, {});
+    Tensor made = std::exchange(decode_.c, {});
+    if (!bones_) return made;
+    const NoGrad values_only;
+    return bones_->with_lengths_of(slice(Var::constant(prior), 0, frames_ - 1, 1), Var::constant(made))
+        .value();
   }
 
  private:
@@ -183,6 +189,7 @@ class AttentionRollout {
   }
 
   AttentionGeneratorOptions options_;
+  std::optional<Bones> bones_;
   Context context_;
   Layer encode_, decode_, parts_;
   std::array<Layer, 2> first_, second_;  // of the two residual blocks

@@ -19,17 +19,18 @@ struct AttentionTrainOptions {
   std::size_t critic_steps = 5;     ///< n_critic
   std::size_t generator_steps = 1;  ///< n_generator
   std::size_t batch = 64;
-  std::size_t rollouts = 2;       ///< n_ar: seconds generated in a row, each from the one before
-  double lambda_gp = 10;          ///< weight of the gradient penalty (eq. 6)
-  double weight_clip = 0;         ///< above 0: clip the critic's weights to +-weight_clip; no penalty then
-  double skeleton_weight = 1;     ///< weight of L_skel (eq. 9); 0: off
-  double blend_weight = 1;        ///< weight of L_blend (eq. 10); 0: off
-  double class_weight = 1;        ///< weight of L_class (eq. 11); 0: off
-  bool skeleton_vectors = false;  ///< L_skel compares bone vectors, as eq. 9 is printed, not bone lengths
-  bool critic_classes = false;    ///< give the critic the class
-  bool balanced = true;           ///< draw classes with equal probability, however many clips they have
-  AdamOptions adam{};             ///< used for all three networks
-  double ema = 0.999;             ///< decay of the running mean of the generator's weights; 0: none
+  std::size_t rollouts = 2;        ///< n_ar: seconds generated in a row, each from the one before
+  double lambda_gp = 10;           ///< weight of the gradient penalty (eq. 6)
+  double weight_clip = 0;          ///< above 0: clip the critic's weights to +-weight_clip; no penalty then
+  double skeleton_weight = 1;      ///< weight of L_skel (eq. 9); 0: off
+  double blend_weight = 1;         ///< weight of L_blend (eq. 10); 0: off
+  double class_weight = 1;         ///< weight of L_class (eq. 11); 0: off
+  bool skeleton_vectors = false;   ///< L_skel compares bone vectors, as eq. 9 is printed, not bone lengths
+  bool critic_classes = false;     ///< give the critic the class
+  bool critic_directions = false;  ///< give the critic the directions of the bones too; the paper: no
+  bool balanced = true;            ///< draw classes with equal probability, however many clips they have
+  AdamOptions adam{};              ///< used for all three networks
+  double ema = 0.999;              ///< decay of the running mean of the generator's weights; 0: none
   std::uint64_t seed = 1;
 
   /// Update steps in an iteration; each draws its own random numbers.
@@ -64,6 +65,9 @@ struct AttentionTrainOptions {
              {.key = "skeleton_vectors", .help = "compare bone vectors, not their lengths"});
     list.add(critic_classes,
              {.key = "critic_classes", .help = "give the critic the class", .group = "Model"});
+    list.add(critic_directions, {.key = "critic_directions",
+                                 .help = "give the critic the directions of the bones too; the paper: off",
+                                 .group = "Model"});
     list.add(balanced, {.key = "balanced",
                         .help = "draw all classes with equal probability, however many clips they have"});
     adam.list_fields(list);
@@ -113,8 +117,9 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
   AttentionTrainer(ActionGan& model, const motion::ActionDataset& data, const AttentionTrainOptions& options)
       : ModelTrainer(model, options),
         windows_(model.context(), data, data.train, options.balanced),
+        bones_(model.context(), model.format()),
         critic_(Initializer(model.context(), model.options().seed + 1),
-                {.dof = model.format().dof(),
+                {.dof = model.format().dof() + (options.critic_directions ? 3 * bones_.count() : 0),
                  .hidden = model.options().hidden,
                  .classes = options.critic_classes ? model.format().classes.size() : 0,
                  .attention = model.options().attention}),
@@ -172,11 +177,16 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
     const CriticFn critic_of_pairs = [&](const Var& x) {
       return score(x, concatenate({classes, classes}, 0));
     };
+    Tensor real, fake;
+    {
+      const NoGrad values_only;
+      real = seen(Var::constant(batch.motion)).value(), fake = seen(future).value();
+    }
     const CriticLoss loss =
         options_.weight_clip > 0
-            ? critic_loss(critic_of_pairs, batch.motion, future.value())
+            ? critic_loss(critic_of_pairs, real, fake)
             : critic_loss(
-                  critic_of_pairs, critic, batch.motion, future.value(),
+                  critic_of_pairs, critic, real, fake,
                   random_uniform(model_.context(), key.with(RandomStream::interpolation), options_.batch),
                   options_.lambda_gp);
     critic_adam_.step(grad(loss.loss, critic_adam_.parameters()));
@@ -219,7 +229,7 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
     const Var fed = concatenate(priors, 1), made = concatenate(futures, 1),
               all_classes = repeated(classes, 0);
     GeneratorLoss loss;
-    loss.adversarial = generator_loss(score(concatenate({fed, made}, 0), all_classes));
+    loss.adversarial = generator_loss(score(seen(concatenate({fed, made}, 0)), all_classes));
     loss.total = loss.adversarial;
     const auto add = [&](Var& part, double weight, const Var& value) {
       part = value;
@@ -267,11 +277,19 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
     return key;
   }
 
+  /// What the critic sees of a motion: its values, and if it sees directions, the bones' unit vectors, scaled
+  /// to vary about as much.
+  Var seen(const Var& motion) const {
+    return options_.critic_directions ? concatenate({motion, affine(bones_.directions(motion), 2)}, 2)
+                                      : motion;
+  }
+
   Var score(const Var& motion, const Var& classes) const {
     return options_.critic_classes ? critic_(motion, classes) : critic_(motion);
   }
 
   ActionSampler windows_;
+  Bones bones_;
   AttentionCritic critic_;
   AttentionClassifier classifier_;
   SkeletonLoss skeleton_loss_;
