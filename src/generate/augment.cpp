@@ -76,7 +76,7 @@ void check_augment_outputs(const AugmentArgs& args, const motion::ActionDataset&
   check_output_folder("--out", out, inputs);
   check_own_list(out / "labels.tsv", labels_head);
   std::vector<fs::path> files{out / "labels.tsv"};
-  if (args.format != "bvh") files.push_back(out / motion::bone_list_name);
+  if (!has_rotations(args.format)) files.push_back(out / motion::bone_list_name);
   for (const motion::ActionClip& clip : data.train)
     files.push_back(out / (synthetic_name(clip.id) + "." + args.format));
   check_outputs("--out", files, inputs);
@@ -95,9 +95,9 @@ void write_clips(const AugmentArgs& args, const ActionGan& model, const std::vec
   motion::in_two_threads(clips.size(), [&](std::size_t i) {
     const motion::PositionClip& clip = clips[i].clip;
     write_action_clip(out / (names[i] + "." + args.format), clip,
-                      args.format == "bvh" ? motion_from_positions(clip) : motion::Motion{}, 0);
+                      has_rotations(args.format) ? motion_from_positions(clip) : motion::Motion{}, 0);
   });
-  if (args.format != "bvh") write_bones_beside(out, model.format().skeleton());
+  if (!has_rotations(args.format)) write_bones_beside(out, model.format().skeleton());
   motion::write_text_atomically(out / "labels.tsv", labels);
   fmt::print("wrote {}: {} and labels.tsv; the first {} of each are the real clip's\n", out.string(),
              counted(clips.size(), "clip"), counted(model.format().frames, "frame"));
@@ -145,7 +145,7 @@ const Verb augment_verb{
       add_action_data_options(*verb, args->data, false);
       verb->add_option("--out", args->out, "folder for the clips and labels.tsv; created if missing")
           ->type_name("DIR");
-      add_format_option(*verb, args->format);
+      add_clip_format_option(*verb, args->format);
       verb->add_option("--seed", args->seed, "seed of the noise, if the model has any")
           ->check(not_negative())
           ->capture_default_str();

@@ -8,6 +8,7 @@
 #include "motiongan/motion/motion.hpp"
 #include "shared/cleaning.hpp"
 #include "shared/clip_reading.hpp"
+#include "shared/motion_files.hpp"
 #include "shared/outputs.hpp"
 #include "shared/prompt.hpp"
 #include "shared/show.hpp"
@@ -24,6 +25,8 @@ struct CompleteArgs {
   double rate = 0;
   Weights weights;
   Cleaning cleaning;
+  Retargeting retargeting;
+  std::string format = "bvh";
   motion::ClipOptions clips;
   bool strict = false;
 };
@@ -155,8 +158,9 @@ int complete(const CompleteArgs& args) {
   const fs::path file = model_file(args.model), out = args.out;
   const std::string clip = fs::path(args.prior).stem().string();
   const std::vector<fs::path> files =
-      sample_files(out, clip + "_" + slug(args.text), args.first_sample, args.count);
-  const std::vector<fs::path> inputs{file, args.prior, args.clips.bones};
+      sample_files(out, clip + "_" + slug(args.text), args.first_sample, args.count, args.format);
+  const std::vector<fs::path> inputs{file, args.prior, args.clips.bones, args.retargeting.skeleton,
+                                     args.retargeting.map};
   check_output("--html", args.html, page_output, inputs);
   check_output("--png", args.png, picture_output, inputs);
   check_outputs("--out", files, inputs);
@@ -180,6 +184,8 @@ int complete(const CompleteArgs& args) {
                               .seed = args.seed,
                               .sample = static_cast<std::uint32_t>(args.first_sample + i),
                               .prior = &prior.seed});
+  TargetBody body(args.retargeting);
+  job.body = &body;
   if (args.cleaning.on()) job.clean = args.cleaning.settings(prior.seed.frames);
   catch_signals();
   const auto made = write_streamed(model, job);
@@ -188,10 +194,10 @@ int complete(const CompleteArgs& args) {
   const double seconds = static_cast<double>(args.frames) / format.rate;
   fmt::print("\"{}\": {}\n", args.text, named(job.files));
   fmt::print("wrote {}: {} of {} from {} on, then {} generated frames ({}), seed {}\n",
-             counted(args.count, "BVH file"), counted(prior.seed.frames, "frame"), clip, prior.from,
-             args.frames, duration(seconds), args.seed);
+             counted(args.count, file_kind(args.format)), counted(prior.seed.frames, "frame"), clip,
+             prior.from, args.frames, duration(seconds), args.seed);
   fmt::print("space: {}\n", prior.scale == 1 ? describe(format.space) : "y up, in the prior's own unit");
-  print_errors(prior, *made, format.layout.root());
+  if (!args.retargeting.on()) print_errors(prior, *made, format.layout.root());
   if (!shows) return 0;
   std::vector<view::ViewedMotion> shown;
   if (prior.truth.frames > 0)
@@ -258,6 +264,8 @@ const Verb complete_verb{
           ->type_name("FILE");
       option("--png", args->png, "also write a picture of their poses")->type_name("FILE");
       add_weights_option(*verb, args->weights);
+      add_format_option(*verb, args->format);
+      add_skeleton_options(*verb, args->retargeting);
       add_clean_options(*verb, args->cleaning);
       verb->callback([&job, args] { job = [args] { return complete(*args); }; });
     }};

@@ -1,10 +1,10 @@
 // motiongan generate: generates motion for a text, or for classes.
 #include "generate/generate_actions.hpp"
 #include "generate/streaming.hpp"
-#include "motiongan/formats/bvh.hpp"
 #include "motiongan/models/action_gan.hpp"
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/motion/motion.hpp"
+#include "shared/action_files.hpp"
 #include "shared/cleaning.hpp"
 #include "shared/outputs.hpp"
 #include "shared/prompt.hpp"
@@ -20,6 +20,8 @@ struct GenerateArgs {
   GenerateOptions options;
   Weights weights;
   Cleaning cleaning;
+  Retargeting retargeting;
+  std::string format = "bvh";
   double rate = 0;
   bool strict = false;
 };
@@ -34,10 +36,16 @@ std::vector<std::string> all_texts(const GenerateArgs& args) {
   return texts;
 }
 
+/// Metres per unit of what is written; 0: unknown.
+double unit_of(const Dvgan& model, const GenerateArgs& args) {
+  return args.retargeting.on() ? 0 : model.format().space.unit_metres;
+}
+
 /// Generates all motions of one text and then writes them: for generators that make a whole window at once.
 /// Returns the motions.
 std::vector<motion::Motion> write_whole(const Dvgan& model, const std::string& text, const GenerateArgs& args,
-                                        const std::vector<fs::path>& files, DriftReport* drift) {
+                                        const std::vector<fs::path>& files, DriftReport* drift,
+                                        TargetBody& body) {
   std::vector<motion::Motion> motions;
   for (const std::vector<float>& poses : model.generate_poses(text, args.options)) {
     if (drift != nullptr) {
@@ -45,9 +53,8 @@ std::vector<motion::Motion> write_whole(const Dvgan& model, const std::string& t
       meter.add(poses, poses.size() / model.format().dof());
       drift->add(meter);
     }
-    motions.push_back(args.cleaning.apply(model.format().to_motion(poses)));
-    const motion::Motion& made = motions.back();
-    motion::write_bvh(files[motions.size() - 1], args.rate > 0 ? motion::resample(made, args.rate) : made);
+    motions.push_back(args.cleaning.apply(body.put(model.format().to_motion(poses))));
+    write_motion(files[motions.size() - 1], motions.back(), args.rate, unit_of(model, args));
   }
   return motions;
 }
@@ -55,9 +62,13 @@ std::vector<motion::Motion> write_whole(const Dvgan& model, const std::string& t
 /// The same frame by frame, for any length. Returns nothing if a signal requested a stop.
 std::optional<std::vector<motion::Motion>> write_long(const Dvgan& model, const std::string& text,
                                                       const GenerateArgs& args, std::size_t frames,
-                                                      const std::vector<fs::path>& files,
-                                                      DriftReport* drift) {
-  StreamJob job{.files = files, .frames = frames, .rate = args.rate};
+                                                      const std::vector<fs::path>& files, DriftReport* drift,
+                                                      TargetBody& body) {
+  StreamJob job{.files = files,
+                .frames = frames,
+                .rate = args.rate,
+                .unit_metres = unit_of(model, args),
+                .body = &body};
   for (std::size_t i = 0; i < files.size(); ++i)
     job.characters.push_back({.text = text,
                               .seed = args.options.seed,
@@ -83,6 +94,9 @@ int generate(const GenerateArgs& args, const fs::path& file) {
   const fs::path out = args.out;
   make_folder(out);
 
+  require(has_rotations(args.format), "--format ", args.format,
+          " writes positions, for class-conditioned models; use bvh or glb");
+  TargetBody body(args.retargeting);
   DriftReport drift;
   DriftReport* const measured = !args.drift.empty() || made > 4 * format.frames ? &drift : nullptr;
   if (streamed) catch_signals();
@@ -94,9 +108,9 @@ int generate(const GenerateArgs& args, const fs::path& file) {
     for (std::size_t again = 2; !names.insert(name).second; ++again)
       name = fmt::format("{}-{}", slug(text), again);
     const std::vector<fs::path> files =
-        sample_files(out, name, args.options.first_sample, args.options.count);
-    const auto motions = streamed ? write_long(model, text, args, made, files, measured)
-                                  : write_whole(model, text, args, files, measured);
+        sample_files(out, name, args.options.first_sample, args.options.count, args.format);
+    const auto motions = streamed ? write_long(model, text, args, made, files, measured, body)
+                                  : write_whole(model, text, args, files, measured, body);
     if (!motions) return stopped(files_made);
     files_made += files.size();
     fmt::print("\"{}\": {}\n", text, named(files));
@@ -106,9 +120,9 @@ int generate(const GenerateArgs& args, const fs::path& file) {
           {args.options.count > 1 ? fmt::format("{} ({})", text, args.options.first_sample + i) : text,
            for_page((*motions)[i], args.rate)});
   }
-  fmt::print("wrote {} of {} at {} per second ({} each), seed {}\n", counted(files_made, "BVH file"),
-             counted(frames, "frame"), brief(rate), duration(static_cast<double>(frames) / rate),
-             args.options.seed);
+  fmt::print("wrote {} of {} at {} per second ({} each), seed {}\n",
+             counted(files_made, file_kind(args.format)), counted(frames, "frame"), brief(rate),
+             duration(static_cast<double>(frames) / rate), args.options.seed);
   fmt::print("space: {}\n", describe(format.space));
   if (measured != nullptr) drift.print();
   if (!args.drift.empty()) {
@@ -125,7 +139,8 @@ int generate(const GenerateArgs& args, const fs::path& file) {
 /// Generates with either kind of model. Throws Error for options of the other kind.
 int generate_either(const GenerateArgs& args, ActionGenerateArgs actions, const CLI::App& verb) {
   const fs::path file = model_file(args.model);
-  std::vector<fs::path> inputs = inputs_of(actions.from, {args.prompts, actions.data});
+  std::vector<fs::path> inputs =
+      inputs_of(actions.from, {args.prompts, actions.data, args.retargeting.skeleton, args.retargeting.map});
   inputs.push_back(file);
   check_output("--html", args.html, page_output, inputs);
   check_output("--png", args.png, picture_output, inputs);
@@ -144,7 +159,8 @@ int generate_either(const GenerateArgs& args, ActionGenerateArgs actions, const 
   actions.count = args.options.count, actions.frames = args.options.frames;
   actions.first_sample = args.options.first_sample, actions.seed = args.options.seed,
   actions.rate = args.rate;
-  actions.weights = args.weights, actions.cleaning = args.cleaning;
+  actions.weights = args.weights, actions.cleaning = args.cleaning, actions.format = args.format;
+  actions.retargeting = args.retargeting;
   return generate_actions(actions, verb, file);
 }
 
@@ -198,6 +214,8 @@ const Verb generate_verb{
           ->type_name("FILE");
       verb->add_option("--png", args->png, "also write a picture of their poses")->type_name("FILE");
       add_weights_option(*verb, args->weights);
+      add_clip_format_option(*verb, args->format);
+      add_skeleton_options(*verb, args->retargeting);
       add_clean_options(*verb, args->cleaning);
       add_action_options(*verb, *actions);
       verb->callback([&job, args, actions, verb] {

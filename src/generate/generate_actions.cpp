@@ -124,8 +124,6 @@ void add_action_options(CLI::App& verb, ActionGenerateArgs& a) {
   option("--data", a.data, "folder of the clips to draw from [that of the run]")->type_name("FOLDER");
   add_options(verb, fields_of(a.clips), "Class-conditioned models",
               {.only = {"up", "scale", "fps", "bones"}});
-  add_format_option(verb, a.format);
-  verb.get_option("--format")->group("Class-conditioned models");
   verb.add_flag("--prior,!--no-prior", a.with_prior, "begin each file with the given second [on]")
       ->group("Class-conditioned models");
   option("--attention-map", a.attention_map,
@@ -136,7 +134,7 @@ void add_action_options(CLI::App& verb, ActionGenerateArgs& a) {
 std::string given_action_options(const CLI::App& verb) {
   std::string out;
   for (const char* name : {"--class", "--seconds", "--from", "--at", "--data", "--up", "--scale", "--fps",
-                           "--bones", "--format", "--prior", "--attention-map"})
+                           "--bones", "--prior", "--attention-map"})
     if (verb.count(name) > 0) out += (out.empty() ? "" : ", ") + std::string(name);
   return out;
 }
@@ -150,8 +148,12 @@ int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const
           quoted_list(format.classes));
   const ActionSchedule schedule =
       parse_action_schedule(args.schedule, format, asked_seconds(args, format.rate));
-  require(!args.cleaning.on() || args.format == "bvh", "--clean works on rotations, which --format ",
-          args.format, " does not hold; use --format bvh");
+  const bool rotates = has_rotations(args.format);
+  require(!args.cleaning.on() || rotates, "--clean works on rotations, which --format ", args.format,
+          " does not hold; use --format bvh");
+  require(!args.retargeting.on() || rotates, "--skeleton works on rotations, which --format ", args.format,
+          " does not hold; use --format bvh");
+  TargetBody body(args.retargeting);
   check_samples(args.first_sample, args.count);
   const std::size_t first_label = schedule.front().label;
   if (!args.attention_map.empty())
@@ -164,9 +166,9 @@ int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const
   for (std::size_t i = 0; i < priors.size(); ++i)
     files.push_back(out / fmt::format("{}_{:03}.{}", name, args.first_sample + i, args.format));
   check_outputs("--out", files, inputs);
-  if (args.format != "bvh") check_outputs("--out", {out / motion::bone_list_name}, inputs);
+  if (!rotates) check_outputs("--out", {out / motion::bone_list_name}, inputs);
   make_folder(out);
-  if (args.format != "bvh") write_bones_beside(out, priors.front().prior.skeleton);
+  if (!rotates) write_bones_beside(out, priors.front().prior.skeleton);
   const bool shows = !args.html.empty() || !args.png.empty();
   std::vector<view::ViewedMotion> shown;
   for (std::size_t first = 0; first < priors.size(); first += characters_at_a_time) {
@@ -180,10 +182,14 @@ int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const
                         .first_sample = static_cast<std::uint32_t>(args.first_sample + first)});
     std::vector<motion::Motion> motions(count);
     motion::in_two_threads(count, [&](std::size_t i) {
-      if (shows || args.format == "bvh")
-        motions[i] = motion_from_positions(clips[i], priors[first + i].reference);
+      if (shows || rotates) motions[i] = motion_from_positions(clips[i], priors[first + i].reference);
+    });
+    if (args.retargeting.on())
+      for (motion::Motion& motion : motions) motion = body.put(motion);
+    motion::in_two_threads(count, [&](std::size_t i) {
       motions[i] = args.cleaning.apply(std::move(motions[i]), args.with_prior ? format.frames : 0);
-      write_action_clip(files[first + i], clips[i], motions[i], args.rate);
+      write_action_clip(files[first + i], clips[i], motions[i], args.rate,
+                        args.retargeting.on() ? 0 : format.space.unit_metres);
     });
     for (std::size_t i = 0; shows && i < count; ++i) {
       const std::size_t given = !args.with_prior ? 0

@@ -2,6 +2,7 @@
 #pragma once
 #include "shared/action_data.hpp"
 #include "shared/cleaning.hpp"
+#include "shared/retargeting.hpp"
 #include "shared/weights.hpp"
 
 namespace motiongan::command {
@@ -9,12 +10,13 @@ namespace motiongan::command {
 struct ActionGenerateArgs {
   std::vector<std::string> from;  // clips
   std::vector<double> at;         // seconds
-  std::string schedule, format = "bvh", data, attention_map;
+  std::string schedule, data, attention_map;
   double seconds = 0;
   bool with_prior = true;
   motion::ClipOptions clips;  // how --from is read
   // As for text-conditioned models.
-  std::string model, out, html, png;
+  std::string model, out, html, png, format = "bvh";
+  Retargeting retargeting;
   std::size_t count = 1, frames = 0, first_sample = 0;
   std::uint64_t seed = 1;
   double rate = 0;

@@ -5,10 +5,9 @@
 #include <cmath>
 #include <list>
 
-#include "motiongan/formats/bvh.hpp"
-#include "motiongan/formats/bvh_stream.hpp"
 #include "motiongan/motion/body.hpp"
 #include "motiongan/train/progress.hpp"
+#include "shared/motion_files.hpp"
 #include "shared/signals.hpp"
 
 namespace motiongan::command {
@@ -16,57 +15,47 @@ namespace {
 
 constexpr std::size_t at_a_time = 64;  // motions per stream, and frames per step
 
-/// A BVH file written piece by piece, resampled to the file's rate.
-class GrowingFile {
- public:
-  GrowingFile(const fs::path& path, const motion::Skeleton& skeleton, std::size_t frames, double from,
-              double to)
-      : resampler_(frames, from, to), writer_(path, skeleton, to, resampler_.total()) {}
-  void append(const motion::Motion& piece) { writer_.append(resampler_.append(piece)); }
-  void finish() { writer_.finish(); }
-
- private:
-  motion::Resampler resampler_;
-  motion::BvhStreamWriter writer_;
-};
-
 /// One motion of a job.
 class Growing {
  public:
-  Growing(CharacterId id, const fs::path& path, const motion::Skeleton& skeleton, double rate,
-          const StreamJob& job, std::size_t frames)
-      : id_(id),
-        scale_(job.scale),
-        keep_(job.kept),
-        file_(path, motion::scaled(skeleton, job.scale), frames, rate, job.rate > 0 ? job.rate : rate) {
+  Growing(CharacterId id, fs::path path, const StreamJob& job, double rate, std::size_t frames)
+      : id_(id), path_(std::move(path)), job_(job), rate_(rate), frames_(frames) {
     if (job.clean) cleaner_.emplace(*job.clean);
   }
 
   CharacterId id() const { return id_; }
 
-  void append(const motion::Motion& piece) { write(cleaner_ ? cleaner_->push(piece) : piece); }
+  void append(const motion::Motion& piece) {
+    const motion::Motion made = job_.body != nullptr ? job_.body->put_piece(piece) : piece;
+    write(cleaner_ ? cleaner_->push(made) : made);
+  }
 
   /// Completes the file and returns the first frames of the motion.
   motion::Motion finish() {
     if (cleaner_) write(cleaner_->finish());
-    file_.finish();
+    file_->finish();
     return std::move(kept_);
   }
 
  private:
   void write(const motion::Motion& piece) {
     if (piece.frames == 0) return;
-    file_.append(motion::scaled(piece, scale_));
-    const std::size_t wanted = std::min(piece.frames, keep_ - kept_.frames);
+    if (!file_)
+      file_.emplace(path_, motion::scaled(piece.skeleton, job_.scale), frames_, rate_,
+                    job_.rate > 0 ? job_.rate : rate_, job_.unit_metres);
+    file_->append(motion::scaled(piece, job_.scale));
+    const std::size_t wanted = std::min(piece.frames, job_.kept - kept_.frames);
     if (wanted == 0) return;
     motion::Motion first = slice(piece, 0, wanted);
     kept_ = kept_.frames == 0 ? std::move(first) : join(std::move(kept_), first);
   }
 
   CharacterId id_;
-  double scale_;
-  std::size_t keep_;  ///< frames
-  GrowingFile file_;
+  fs::path path_;
+  const StreamJob& job_;
+  double rate_;
+  std::size_t frames_;
+  std::optional<GrowingFile> file_;
   std::optional<motion::CleanStream> cleaner_;
   motion::Motion kept_;
 };
@@ -80,11 +69,10 @@ bool write_some(const Dvgan& model, const StreamJob& job, std::size_t first, std
   MotionStream stream(model);
   const std::vector<CharacterId> ids = stream.add(std::vector(
       job.characters.begin() + offset, job.characters.begin() + offset + static_cast<std::ptrdiff_t>(count)));
-  const motion::Skeleton& skeleton = job.before.frames > 0 ? job.before.skeleton : model.format().skeleton();
   std::list<Growing> growing;
   std::vector<DriftMeter> drifts(count, DriftMeter(model.format()));
   for (std::size_t i = 0; i < count; ++i) {
-    growing.emplace_back(ids[i], job.files[first + i], skeleton, rate, job, job.before.frames + job.frames);
+    growing.emplace_back(ids[i], job.files[first + i], job, rate, job.before.frames + job.frames);
     if (job.before.frames > 0) growing.back().append(job.before);
   }
   for (std::size_t at = 0; at < job.frames; at += at_a_time) {

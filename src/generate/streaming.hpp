@@ -6,6 +6,7 @@
 #include "motiongan/motion/clean_stream.hpp"
 #include "motiongan/sample/motion_stream.hpp"
 #include "shared/command.hpp"
+#include "shared/retargeting.hpp"
 #include "shared/show.hpp"
 
 namespace motiongan::command {
@@ -18,6 +19,8 @@ struct StreamJob {
   double rate = 0;                   ///< of the files, by interpolation; 0: the model's
   double scale = 1;                  ///< of the files' lengths to the model's
   std::size_t kept = 0;              ///< frames of each to return, at the model's rate
+  double unit_metres = 0;            ///< metres per unit of the files; 0: unknown
+  TargetBody* body = nullptr;        ///< a skeleton that what is written and returned is put on
   std::optional<motion::CleanOptions> clean = {};  ///< clean up what is written and returned
 };
 

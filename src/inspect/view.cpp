@@ -1,4 +1,5 @@
 // motiongan view: shows clips as stick figures on an HTML page or in a picture.
+#include "motiongan/formats/glb.hpp"
 #include "motiongan/io/safetensors.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "shared/clip_reading.hpp"
@@ -11,7 +12,7 @@ namespace {
 
 struct ViewArgs {
   std::vector<std::string> files;
-  std::string html, png;
+  std::string html, png, glb;
   double rate = 0;
   motion::ClipOptions clips{.first_frame = motion::FirstFrame::keep};
 };
@@ -20,7 +21,9 @@ int view_clips(ViewArgs args) {
   const std::vector<fs::path> inputs = inputs_of(args.files, {args.clips.bones.string()});
   check_output("--html", args.html, page_output, inputs);
   check_output("--png", args.png, picture_output, inputs);
+  check_output("--glb", args.glb, model_output, inputs);
   std::vector<view::ViewedMotion> motions;
+  double unit_metres = 0;  // that of the last file which says so
   for (const std::string& given : args.files) {
     require(motion::extension_of(given) != ".safetensors", given,
             " is a model; generate motion with it first: ", program(), " generate ", shell_word(given),
@@ -28,17 +31,25 @@ int view_clips(ViewArgs args) {
     for_each_clip(
         given, args.clips, [&](const fs::path& file, const std::string&, motion::LoadedMotion&& loaded) {
           motion::Motion motion = std::move(loaded.motion);
+          if (loaded.unit_metres > 0) unit_metres = loaded.unit_metres;
           if (args.rate > 0) motion = motion::resample(motion, args.rate, file.string());
           fmt::print("{}: {} at {} per second, {}\n", file.string(), counted(motion.frames, "frame"),
                      brief(motion.rate), duration(static_cast<double>(motion.frames) / motion.rate));
           motions.push_back({file.stem().string(), std::move(motion)});
         });
   }
-  if (args.html.empty() && args.png.empty()) args.html = "view.html";
+  if (args.html.empty() && args.png.empty() && args.glb.empty()) args.html = "view.html";
   if (!args.html.empty())
     show_page(args.html, motions,
               motions.size() == 1 ? motions.front().title : counted(motions.size(), "clip"));
   if (!args.png.empty()) show_strip(args.png, motions);
+  if (!args.glb.empty()) {
+    make_folder_of(args.glb);
+    std::vector<motion::NamedMotion> named;
+    for (const view::ViewedMotion& shown : motions) named.push_back({shown.title, shown.motion});
+    motion::write_glb(args.glb, named, {.unit_metres = unit_metres});
+    fmt::print("wrote {}: {}; open it in any viewer of glTF\n", args.glb, counted(named.size(), "animation"));
+  }
   return 0;
 }
 
@@ -49,7 +60,10 @@ const Verb view_verb{
       verb->add_option("FILES", args->files, "motion files (BVH, AMC, NPZ, NPY, CSV), or folders of them")
           ->required()
           ->type_name("");
-      verb->add_option("--html", args->html, "HTML page to write [view.html, unless --png is given]")
+      verb->add_option("--html", args->html, "HTML page to write [view.html, unless --png or --glb is given]")
+          ->type_name("FILE");
+      verb->add_option("--glb", args->glb,
+                       "glTF file to write: an animation for each clip, with a simple body")
           ->type_name("FILE");
       verb->add_option("--png", args->png, "picture to write: a row of poses for each clip")
           ->type_name("FILE");

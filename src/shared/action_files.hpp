@@ -1,26 +1,26 @@
-// Writes position clips as BVH, CSV or NPY files.
+// Writes position clips as BVH, GLB, CSV or NPY files.
 #pragma once
 #include "motiongan/data/action_source.hpp"
-#include "motiongan/formats/bvh.hpp"
 #include "motiongan/formats/position_files.hpp"
 #include "motiongan/motion/position_rotations.hpp"
-#include "shared/command.hpp"
+#include "shared/motion_files.hpp"
 
 namespace motiongan::command {
 
-/// Adds --format.
-inline void add_format_option(CLI::App& verb, std::string& format) {
-  verb.add_option("--format", format, "file format: bvh, or positions as csv or npy (with a bones.tsv)")
-      ->check(CLI::IsMember({"bvh", "csv", "npy"}))
-      ->capture_default_str();
+/// Adds --format with the formats of positions too.
+inline void add_clip_format_option(CLI::App& verb, std::string& format) {
+  add_format_option(verb, format, {"csv", "npy"}, "; or positions as csv or npy (with a bones.tsv)");
 }
 
+/// Whether the format holds rotations.
+inline bool has_rotations(const std::string& format) { return format == "bvh" || format == "glb"; }
+
 /// Writes the clip in the format of the file's extension, at `rate` (0: the clip's own). `motion` is the clip
-/// with rotations; only BVH needs it.
+/// with rotations, which BVH and GLB need.
 inline void write_action_clip(const fs::path& file, const motion::PositionClip& clip,
-                              const motion::Motion& motion, double rate) {
+                              const motion::Motion& motion, double rate, double unit_metres = 0) {
   const std::string kind = file.extension().string();
-  if (kind == ".bvh") return motion::write_bvh(file, rate > 0 ? motion::resample(motion, rate) : motion);
+  if (has_rotations(kind.substr(1))) return write_motion(file, motion, rate, unit_metres);
   const motion::PositionClip own = rate > 0 ? motion::resample(clip, rate) : motion::PositionClip{};
   const motion::PositionClip& written = rate > 0 ? own : clip;
   if (kind == ".csv")

@@ -19,7 +19,8 @@ struct OutputKind {
   std::vector<std::string_view> endings;
 };
 inline const OutputKind page_output{"an HTML page", {".html", ".htm"}}, picture_output{"a picture", {".png"}},
-    table_output{"a table", {".csv", ".tsv", ".txt"}}, json_output{"JSON", {".json"}};
+    table_output{"a table", {".csv", ".tsv", ".txt"}}, json_output{"JSON", {".json"}},
+    model_output{"glTF", {".glb"}};
 
 namespace output_detail {
 
@@ -78,7 +79,7 @@ inline void check_output(std::string_view option, const std::filesystem::path& f
   const std::string ending = motion::extension_of(file);
   const auto is_ending = [&](std::string_view known) { return known == ending; };
   for (const std::string_view known : {".bvh", ".amc", ".asf", ".npz", ".npy", ".safetensors", ".csv", ".tsv",
-                                       ".txt", ".json", ".html", ".htm", ".png"})
+                                       ".txt", ".json", ".html", ".htm", ".png", ".glb"})
     require(known != ending || std::any_of(kind.endings.begin(), kind.endings.end(), is_ending), option, " ",
             file.string(), " would be ", kind.name, ", which cannot end in ", ending, "; use ",
             kind.endings.front(), ", and give input files before the option");

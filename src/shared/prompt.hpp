@@ -93,12 +93,12 @@ inline void add_strict_option(CLI::App& verb, bool& strict) {
                 "refuse a text with words that the model never saw [off: treat them as unknown]");
 }
 
-/// NAME_000.bvh and so on, for samples `first` to `first` + `count` - 1.
+/// NAME_000.bvh and so on, or with another format, for samples `first` to `first` + `count` - 1.
 inline std::vector<fs::path> sample_files(const fs::path& folder, const std::string& name, std::size_t first,
-                                          std::size_t count) {
+                                          std::size_t count, const std::string& format = "bvh") {
   std::vector<fs::path> files;
   for (std::size_t i = 0; i < count; ++i)
-    files.push_back(folder / fmt::format("{}_{:03}.bvh", name, first + i));
+    files.push_back(folder / fmt::format("{}_{:03}.{}", name, first + i, format));
   return files;
 }
 

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 
+#include "../support/other_bodies.hpp"
 #include "command.hpp"
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/metrics/jerk.hpp"
 #include "motiongan/models/dvgan.hpp"
+#include "motiongan/motion/clean_stream.hpp"
 #include "motiongan/motion/motion.hpp"
 
 using namespace motiongan::motion;
@@ -201,11 +203,39 @@ TEST_CASE("an RNN model makes any number of frames") {
     CHECK(by_itself.has("wrote 1 clip to c"));
     CHECK(by_itself.has("foot skating"));
     CHECK(motiongan::mean_jerk(to_motion(read_bvh("c/walk_000.bvh"))) ==
-          doctest::Approx(motiongan::mean_jerk(cleaned)).epsilon(1e-3));
+          doctest::Approx(motiongan::mean_jerk(clean(made))).epsilon(1e-3));
+    CleanStream stream;  // generate cleans up while it writes
+    Motion streamed = stream.push(made);
+    streamed = join(std::move(streamed), stream.finish());
+    CHECK(motiongan::mean_jerk(cleaned) == doctest::Approx(motiongan::mean_jerk(streamed)).epsilon(1e-3));
     CHECK(bytes_of("c.html").find("walk_000, cleaned") != std::string::npos);
     CHECK(call("clean b --out b").status == 1);
     CHECK(call("clean b/walk_000.bvh --out b").has("is an input"));
     CHECK(call("generate run --text walk --clean hands").status != 0);
+  }
+  SUBCASE("--format glb and --skeleton: an animated body, another skeleton") {
+    const Said said = call("generate run --text walk --frames 60 --format glb --out g");
+    CHECK_MESSAGE(said.status == 0, said.text);
+    CHECK(said.has("wrote 1 GLB file"));
+    CHECK(bytes_of("g/walk_000.glb").starts_with("glTF"));
+    CHECK(call("generate run --text walk --format npy --out g").has("use bvh or glb"));
+    Motion other;
+    other.skeleton = motiongan::testing::vrm();
+    other.rate = 30, other.frames = 1;
+    other.rotations.resize(other.skeleton.size());
+    for (const auto& joint : other.skeleton.joints) other.positions.push_back(joint.offset);
+    motiongan::motion::write_bvh("vrm.bvh", other);
+    const Said moved = call("generate run --text walk --frames 60 --skeleton vrm.bvh --out v --clean feet");
+    CHECK_MESSAGE(moved.status == 0, moved.text);
+    CHECK(moved.has("left upper arm"));
+    const Motion made = to_motion(read_bvh("v/walk_000.bvh"));
+    CHECK(made.skeleton.find("leftUpperArm") >= 0);
+    CHECK(made.frames == 60);
+    CHECK(call("generate run --text walk --map m.tsv").has("need --skeleton"));
+    CHECK(call("generate run --text walk --skeleton none.bvh").has("none.bvh does not exist"));
+    CHECK(call("view v g --glb seen.glb").status == 1);  // GLB files are not read
+    REQUIRE(call("view v --glb seen.glb").status == 0);
+    CHECK(bytes_of("seen.glb").find("walk_000") != std::string::npos);
   }
   SUBCASE("memory does not grow with the length") {
     const long some = peak_memory("generate run --text walk --frames 1000");

@@ -41,7 +41,10 @@ inline SideMark side_mark(std::string_view name) {
     return side == Side::centre ? SideMark{} : SideMark{side, prefix + at, 1};
   };
   if (stands_alone(name[n - 2]) && letter(n - 1).side != Side::centre) return letter(n - 1);
-  if (stands_alone(name[1])) return letter(0);
+  if (stands_alone(name[1]) && letter(0).side != Side::centre) return letter(0);
+  for (std::size_t at = 1; at + 1 < n; ++at)  // "J_Bip_L_Hand", "Bip01 L Hand"
+    if (stands_alone(name[at - 1]) && stands_alone(name[at + 1]) && letter(at).side != Side::centre)
+      return letter(at);
   // "LHipJoint" and "lFoot", but not "LowerBack".
   return std::isupper(static_cast<unsigned char>(name[1])) ? letter(0) : SideMark{};
 }

@@ -88,6 +88,15 @@ inline double floor_under(const Motion& motion, std::span<const std::string> foo
   return percentile(std::move(heights), 0.05);
 }
 
+/// Moves `joint` of frame f, and what hangs on it, up by `rise`.
+inline void raise(Motion& motion, std::size_t f, std::size_t joint, double rise) {
+  const int parent = motion.skeleton.joints[joint].parent;
+  Vec3 up{0, rise, 0};
+  if (parent >= 0)
+    up = rotate(inverse(world_joint(motion, f, static_cast<std::size_t>(parent)).rotation), up);
+  motion.position(f, joint) = add(motion.position(f, joint), up);
+}
+
 namespace clean_detail {
 
 /// Largest (sign 1) or smallest (sign -1) value within `reach` frames of each frame.
@@ -156,15 +165,6 @@ class Cleaner {
     return out;
   }
 
-  /// Moves the body by `rise` in frame f.
-  void raise(std::size_t f, double rise) {
-    const int parent = motion_.skeleton.joints[root_].parent;
-    Vec3 up{0, rise, 0};
-    if (parent >= 0)
-      up = rotate(inverse(world_joint(motion_, f, static_cast<std::size_t>(parent)).rotation), up);
-    motion_.position(f, root_) = add(motion_.position(f, root_), up);
-  }
-
   /// Takes away the height of the lower foot above the floor where it stays up for longer than a jump takes:
   /// an opening (Serra 1982), which keeps shorter rises as they are. Feet below the floor are raised.
   void put_down(const std::vector<std::vector<Vec3>>& feet) {
@@ -179,7 +179,7 @@ class Cleaner {
     for (double& r : rise)
       r = std::max(r - options_.play * metre_, std::min(r + options_.play * metre_, 0.0));
     rise = smoothed(rise, 1 / options_.airborne, motion_.rate);
-    for (std::size_t f = 0; f < motion_.frames; ++f) raise(f, -rise[f]);
+    for (std::size_t f = 0; f < motion_.frames; ++f) raise(motion_, f, root_, -rise[f]);
   }
 
   /// How far a foot has to move in each frame to stand still where it stands; between two stands it is let go
@@ -230,7 +230,7 @@ class Cleaner {
     const auto reach = static_cast<std::size_t>(std::round(options_.blend * motion_.rate));
     const std::vector<double> smooth =
         smoothed(extremes(drop, reach, 1), 1 / (2 * std::max(options_.blend, 1e-3)), motion_.rate);
-    for (std::size_t f = 0; f < motion_.frames; ++f) raise(f, -std::max(smooth[f], 0.0));
+    for (std::size_t f = 0; f < motion_.frames; ++f) raise(motion_, f, root_, -std::max(smooth[f], 0.0));
   }
 
   Motion motion_;

@@ -1,0 +1,76 @@
+// Writes motions in the format of a file's extension: BVH or GLB.
+#pragma once
+#include <cctype>
+#include <optional>
+#include <set>
+
+#include "motiongan/formats/bvh_stream.hpp"
+#include "motiongan/formats/glb.hpp"
+#include "motiongan/motion/body.hpp"
+#include "motiongan/motion/resampler.hpp"
+#include "shared/command.hpp"
+
+namespace motiongan::command {
+
+/// Adds --format. `others` are further formats, and what they are.
+inline void add_format_option(CLI::App& verb, std::string& format, const std::set<std::string>& others = {},
+                              const std::string& what = "") {
+  std::set<std::string> names{"bvh", "glb"};
+  names.insert(others.begin(), others.end());
+  verb.add_option(
+          "--format", format,
+          "file format: bvh, or glb (glTF: an animated skeleton with a simple body, in metres)" + what)
+      ->check(CLI::IsMember(names))
+      ->capture_default_str();
+}
+
+/// "BVH file", "GLB file".
+inline std::string file_kind(std::string format) {
+  for (char& c : format) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return format + " file";
+}
+
+/// A motion file that is written piece by piece, resampled. BVH grows on disk; a GLB file is kept in memory
+/// until it is finished.
+class GrowingFile {
+ public:
+  /// For `frames` frames at `from` per second, written at `to`. `unit_metres` is the motion's unit; 0:
+  /// unknown.
+  GrowingFile(fs::path path, const motion::Skeleton& skeleton, std::size_t frames, double from, double to,
+              double unit_metres)
+      : path_(std::move(path)), unit_metres_(unit_metres), resampler_(frames, from, to) {
+    if (path_.extension() != ".glb") writer_.emplace(path_, skeleton, to, resampler_.total());
+  }
+
+  void append(const motion::Motion& piece) {
+    motion::Motion next = resampler_.append(piece);
+    if (writer_)
+      writer_->append(next);
+    else if (next.frames > 0)
+      kept_ = kept_.frames == 0 ? std::move(next) : join(std::move(kept_), next);
+  }
+
+  void finish() {
+    if (writer_) return writer_->finish();
+    const motion::NamedMotion named{path_.stem().string(), std::move(kept_)};
+    motion::write_glb(path_, {&named, 1}, {.unit_metres = unit_metres_});
+  }
+
+ private:
+  fs::path path_;
+  double unit_metres_;
+  motion::Resampler resampler_;
+  std::optional<motion::BvhStreamWriter> writer_;
+  motion::Motion kept_;
+};
+
+/// Writes a whole motion at `rate` (0: its own).
+inline void write_motion(const fs::path& path, const motion::Motion& motion, double rate = 0,
+                         double unit_metres = 0) {
+  GrowingFile file(path, motion.skeleton, motion.frames, motion.rate, rate > 0 ? rate : motion.rate,
+                   unit_metres);
+  file.append(motion);
+  file.finish();
+}
+
+}  // namespace motiongan::command

@@ -1,0 +1,67 @@
+// Putting what a verb reads or makes on another skeleton.
+#include "shared/retargeting.hpp"
+
+#include "shared/clip_reading.hpp"
+#include "shared/show.hpp"
+
+namespace motiongan::command {
+
+void add_map_options(CLI::App& verb, Retargeting& retargeting) {
+  verb.add_option("--map", retargeting.map,
+                  "which joints belong together, as --save-map writes it [by names]")
+      ->type_name("FILE");
+  verb.add_option("--save-map", retargeting.save_map, "also write which joints belong together, to be edited")
+      ->type_name("FILE");
+}
+
+void add_skeleton_options(CLI::App& verb, Retargeting& retargeting) {
+  verb.add_option("--skeleton", retargeting.skeleton,
+                  "put the motion on the skeleton of this motion file [the model's]")
+      ->type_name("FILE");
+  add_map_options(verb, retargeting);
+}
+
+TargetBody::TargetBody(const Retargeting& options) : options_(options) {
+  require(options.on() || (options.map.empty() && options.save_map.empty()),
+          "--map and --save-map need --skeleton");
+  if (options.on()) body_ = read_clip(options.skeleton, {.first_frame = motion::FirstFrame::keep}).motion;
+}
+
+motion::Motion TargetBody::put(const motion::Motion& motion) {
+  return options_.on() ? retargeter_of(motion).standing(motion) : motion;
+}
+
+motion::Motion TargetBody::put_piece(const motion::Motion& piece) {
+  return options_.on() ? retargeter_of(piece)(piece) : piece;
+}
+
+const motion::Retargeter& TargetBody::retargeter_of(const motion::Motion& motion) {
+  if (!retargeter_ || motion.skeleton != from_) begin(motion);
+  return *retargeter_;
+}
+
+void TargetBody::begin(const motion::Motion& motion) {
+  const bool first = !retargeter_;
+  const motion::Skeleton &from = motion.skeleton, &to = body_.skeleton;
+  const motion::JointMap map =
+      options_.map.empty() ? find_joint_map(from, to) : motion::read_joint_map(options_.map, from, to);
+  retargeter_.emplace(motion, body_, map);
+  from_ = from;
+  if (!first) return;
+  if (!options_.save_map.empty()) motion::write_joint_map(options_.save_map, map, from, to);
+  std::vector<std::vector<std::string>> rows;
+  const auto names = [](const motion::BodyParts& body, motion::BodyPart part,
+                        const motion::Skeleton& skeleton) {
+    std::string all;
+    if (const auto at = body.find(part); at != body.end())
+      for (const std::size_t j : at->second) all += (all.empty() ? "" : ", ") + skeleton.joints[j].name;
+    return all.empty() ? std::string("-") : all;
+  };
+  for (const auto& [part, name] : enum_names(motion::BodyPart{}))
+    rows.push_back({name, names(map.from, part, from), names(map.to, part, to)});
+  print_table({"", "from", "to"}, rows, "lll");
+  fmt::print("lengths times {}\n", brief(retargeter_->length_scale()));
+  if (!options_.save_map.empty()) fmt::print("wrote {}\n", options_.save_map);
+}
+
+}  // namespace motiongan::command
