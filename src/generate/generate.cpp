@@ -95,7 +95,7 @@ int generate(const GenerateArgs& args, const fs::path& file) {
   make_folder(out);
 
   require(has_rotations(args.format), "--format ", args.format,
-          " writes positions, for class-conditioned models; use bvh or glb");
+          " writes positions, for class-conditioned models; use bvh, glb or vrma");
   TargetBody body(args.retargeting);
   DriftReport drift;
   DriftReport* const measured = !args.drift.empty() || made > 4 * format.frames ? &drift : nullptr;

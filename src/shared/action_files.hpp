@@ -1,4 +1,4 @@
-// Writes position clips as BVH, GLB, CSV or NPY files.
+// Writes position clips as BVH, GLB, VRMA, CSV or NPY files.
 #pragma once
 #include "motiongan/data/action_source.hpp"
 #include "motiongan/formats/position_files.hpp"
@@ -13,10 +13,10 @@ inline void add_clip_format_option(CLI::App& verb, std::string& format) {
 }
 
 /// Whether the format holds rotations.
-inline bool has_rotations(const std::string& format) { return format == "bvh" || format == "glb"; }
+inline bool has_rotations(const std::string& format) { return format != "csv" && format != "npy"; }
 
 /// Writes the clip in the format of the file's extension, at `rate` (0: the clip's own). `motion` is the clip
-/// with rotations, which BVH and GLB need.
+/// with rotations, which all but CSV and NPY need.
 inline void write_action_clip(const fs::path& file, const motion::PositionClip& clip,
                               const motion::Motion& motion, double rate, double unit_metres = 0) {
   const std::string kind = file.extension().string();

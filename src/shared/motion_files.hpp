@@ -1,11 +1,11 @@
-// Writes motions in the format of a file's extension: BVH or GLB.
+// Writes motions in the format of a file's extension: BVH, GLB or VRMA.
 #pragma once
 #include <cctype>
 #include <optional>
 #include <set>
 
 #include "motiongan/formats/bvh_stream.hpp"
-#include "motiongan/formats/glb.hpp"
+#include "motiongan/formats/vrma.hpp"
 #include "motiongan/motion/body.hpp"
 #include "motiongan/motion/resampler.hpp"
 #include "shared/command.hpp"
@@ -15,11 +15,13 @@ namespace motiongan::command {
 /// Adds --format. `others` are further formats, and what they are.
 inline void add_format_option(CLI::App& verb, std::string& format, const std::set<std::string>& others = {},
                               const std::string& what = "") {
-  std::set<std::string> names{"bvh", "glb"};
+  std::set<std::string> names{"bvh", "glb", "vrma"};
   names.insert(others.begin(), others.end());
-  verb.add_option(
-          "--format", format,
-          "file format: bvh, or glb (glTF: an animated skeleton with a simple body, in metres)" + what)
+  verb.add_option("--format", format,
+                  "file format: bvh; glb (glTF: an animated skeleton with a simple body, in metres); vrma "
+                  "(an animation "
+                  "for VRM avatars)" +
+                      what)
       ->check(CLI::IsMember(names))
       ->capture_default_str();
 }
@@ -30,8 +32,8 @@ inline std::string file_kind(std::string format) {
   return format + " file";
 }
 
-/// A motion file that is written piece by piece, resampled. BVH grows on disk; a GLB file is kept in memory
-/// until it is finished.
+/// A motion file that is written piece by piece, resampled. BVH grows on disk; other formats are kept
+/// in memory until they are finished.
 class GrowingFile {
  public:
   /// For `frames` frames at `from` per second, written at `to`. `unit_metres` is the motion's unit; 0:
@@ -39,7 +41,7 @@ class GrowingFile {
   GrowingFile(fs::path path, const motion::Skeleton& skeleton, std::size_t frames, double from, double to,
               double unit_metres)
       : path_(std::move(path)), unit_metres_(unit_metres), resampler_(frames, from, to) {
-    if (path_.extension() != ".glb") writer_.emplace(path_, skeleton, to, resampler_.total());
+    if (path_.extension() == ".bvh") writer_.emplace(path_, skeleton, to, resampler_.total());
   }
 
   void append(const motion::Motion& piece) {
@@ -53,6 +55,7 @@ class GrowingFile {
   void finish() {
     if (writer_) return writer_->finish();
     const motion::NamedMotion named{path_.stem().string(), std::move(kept_)};
+    if (path_.extension() == ".vrma") return motion::write_vrma(path_, named.name, named.motion);
     motion::write_glb(path_, {&named, 1}, {.unit_metres = unit_metres_});
   }
 

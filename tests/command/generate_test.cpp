@@ -218,7 +218,9 @@ TEST_CASE("an RNN model makes any number of frames") {
     CHECK_MESSAGE(said.status == 0, said.text);
     CHECK(said.has("wrote 1 GLB file"));
     CHECK(bytes_of("g/walk_000.glb").starts_with("glTF"));
-    CHECK(call("generate run --text walk --format npy --out g").has("use bvh or glb"));
+    REQUIRE(call("generate run --text walk --frames 60 --format vrma --out g").status == 0);
+    CHECK(bytes_of("g/walk_000.vrma").find("VRMC_vrm_animation") != std::string::npos);
+    CHECK(call("generate run --text walk --format npy --out g").has("use bvh, glb or vrma"));
     Motion other;
     other.skeleton = motiongan::testing::vrm();
     other.rate = 30, other.frames = 1;
