@@ -56,7 +56,7 @@ class Bones {
     const Shape by_bone{frames, batch, bones_, 3};
     const Var longs = broadcast_to(reshape(lengths(vectors(pose)), {1, batch, bones_, 1}), by_bone);
     const Var made = reshape(directions(motion), by_bone) * longs;
-    const Var places = linear(reshape(made, {frames, batch, 3 * bones_}), back_, {.bias = back_shift_});
+    Var places = linear(reshape(made, {frames, batch, 3 * bones_}), back_, {.bias = back_shift_});
     if (places_ == motion.dim(2)) return places;
     return concatenate({places, slice(motion, 2, places_, motion.dim(2) - places_)}, 2);
   }

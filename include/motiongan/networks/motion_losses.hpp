@@ -21,8 +21,8 @@ class SkeletonLoss {
     const std::size_t frames = future.dim(0), batch = future.dim(1);
     const Var made = measured(future), given = measured(slice(prior, 0, 0, 1));
     const Var miss = made - broadcast_to(given, made.shape());
-    const double unit = bones_.mean_length() * bones_.mean_length();
-    return affine(sum(square(miss)), 1 / (static_cast<double>(frames * batch) * unit));
+    const double unit = bones_.mean_length();
+    return affine(sum(square(miss)), 1 / (static_cast<double>(frames * batch) * unit * unit));
   }
 
  private:
