@@ -80,7 +80,7 @@ inline void require_one_skeleton(std::span<const ClipFacts> clips) {
   }
   throw Error("the clips have ", groups.size(), " different skeletons:", list,
               "\nA model is trained on one of them: keep the clips of one with --skeleton-of FILE "
-              "(skeleton_of), or train on separate folders");
+              "(skeleton_of), or put all on one skeleton with `motiongan retarget` (Retargeter)");
 }
 
 /// Throws Error, naming the clips, if some have y up and others z. Returns z if any clip has z up.
