@@ -57,7 +57,7 @@ inline void write_joint_map(const std::filesystem::path& path, const JointMap& m
 
 /// Reads a map that write_joint_map() wrote, perhaps edited: lines may be left out, changed or in another
 /// order; empty ones and those that begin with # do not count. Throws Error, naming file and line, for an
-/// unknown part or joint, and for a body without hips or a limb without its beginning.
+/// unknown part or joint, and for a body without hips or without a leg down to the foot.
 inline JointMap read_joint_map(const std::filesystem::path& path, const Skeleton& from, const Skeleton& to) {
   JointMap map;
   std::istringstream lines(read_text(path, "map of joints", largest_list_file));
@@ -89,7 +89,9 @@ inline JointMap read_joint_map(const std::filesystem::path& path, const Skeleton
     add(map.from, from, cells[2], "comes from");
   }
   for (const auto& [body, which] : {std::pair{&map.from, "comes from"}, std::pair{&map.to, "goes to"}})
-    for (const BodyPart part : {BodyPart::hips, BodyPart::left_thigh, BodyPart::right_thigh})
+    for (const BodyPart part :
+         {BodyPart::hips, BodyPart::left_thigh, BodyPart::left_shin, BodyPart::left_foot,
+          BodyPart::right_thigh, BodyPart::right_shin, BodyPart::right_foot})
       require(body->contains(part), path.string(), ": the skeleton that the motion ", which,
               " has no joint for the ", name_of(part));
   return map;
