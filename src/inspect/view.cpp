@@ -21,7 +21,7 @@ int view_clips(ViewArgs args) {
   const std::vector<fs::path> inputs = inputs_of(args.files, {args.clips.bones.string()});
   check_output("--html", args.html, page_output, inputs);
   check_output("--png", args.png, picture_output, inputs);
-  check_output("--glb", args.glb, model_output, inputs);
+  check_output("--glb", args.glb, glb_output, inputs);
   std::vector<view::ViewedMotion> motions;
   double unit_metres = 0;  // that of the last file which says so
   for (const std::string& given : args.files) {

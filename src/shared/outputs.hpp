@@ -20,7 +20,7 @@ struct OutputKind {
 };
 inline const OutputKind page_output{"an HTML page", {".html", ".htm"}}, picture_output{"a picture", {".png"}},
     table_output{"a table", {".csv", ".tsv", ".txt"}}, json_output{"JSON", {".json"}},
-    model_output{"glTF", {".glb"}};
+    glb_output{"glTF", {".glb"}};
 
 namespace output_detail {
 

@@ -40,20 +40,18 @@ void set_default(const CLI::App& verb, const char* option, T& member, U value) {
 /// Sets the options of the preset that the command line of `verb` does not give.
 inline void apply(TrainingPreset preset, DvganArgs& args, const CLI::App& verb) {
   const bool steady = preset == TrainingPreset::steady;
-  const auto set = [&](const char* option, auto& member, auto value) {
-    set_default(verb, option, member, value);
-  };
   const bool recurrent = args.model.generator == GeneratorKind::rnn;
-  set("--root-rotation", args.data.root_rotation,
-      std::optional(!steady     ? motion::RootRotation::expmap
-                    : recurrent ? motion::RootRotation::velocity
-                                : motion::RootRotation::support));
+  set_default(verb, "--root-rotation", args.data.root_rotation,
+              std::optional(!steady     ? motion::RootRotation::expmap
+                            : recurrent ? motion::RootRotation::velocity
+                                        : motion::RootRotation::support));
   // Velocities need two frames, jerk needs four.
   const bool moves = steady && args.data.frames >= 2, jerks = steady && args.data.frames >= 4;
-  set("--critic-sees", args.training.critic.sees, moves ? CriticSees::both : CriticSees::rotations);
-  set("--loss-smooth", args.training.body.smooth, jerks ? 1.0 : 0.0);
-  set("--loss-contact", args.training.body.contact, jerks ? 1.0 : 0.0);
-  set("--ema", args.training.ema, steady ? 0.999 : 0.0);
+  set_default(verb, "--critic-sees", args.training.critic.sees,
+              moves ? CriticSees::both : CriticSees::rotations);
+  set_default(verb, "--loss-smooth", args.training.body.smooth, jerks ? 1.0 : 0.0);
+  set_default(verb, "--loss-contact", args.training.body.contact, jerks ? 1.0 : 0.0);
+  set_default(verb, "--ema", args.training.ema, steady ? 0.999 : 0.0);
 }
 
 /// The same for `train attention`. The LSTM baseline has the paper's form alone.

@@ -221,12 +221,7 @@ TEST_CASE("an RNN model makes any number of frames") {
     REQUIRE(call("generate run --text walk --frames 60 --format vrma --out g").status == 0);
     CHECK(bytes_of("g/walk_000.vrma").find("VRMC_vrm_animation") != std::string::npos);
     CHECK(call("generate run --text walk --format npy --out g").has("use bvh, glb or vrma"));
-    Motion other;
-    other.skeleton = motiongan::testing::vrm();
-    other.rate = 30, other.frames = 1;
-    other.rotations.resize(other.skeleton.size());
-    for (const auto& joint : other.skeleton.joints) other.positions.push_back(joint.offset);
-    motiongan::motion::write_bvh("vrm.bvh", other);
+    motiongan::motion::write_bvh("vrm.bvh", motiongan::testing::at_rest(motiongan::testing::vrm()));
     const Said moved = call("generate run --text walk --frames 60 --skeleton vrm.bvh --out v --clean feet");
     CHECK_MESSAGE(moved.status == 0, moved.text);
     CHECK(moved.has("left upper arm"));

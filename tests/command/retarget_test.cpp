@@ -10,24 +10,10 @@
 using namespace motiongan::motion;
 using namespace motiongan::testing;
 
-namespace {
-
-/// A BVH file of one frame, with the skeleton.
-void write_skeleton(const std::string& file, const Skeleton& skeleton) {
-  Motion motion;
-  motion.skeleton = skeleton;
-  motion.rate = 30, motion.frames = 1;
-  motion.rotations.resize(skeleton.size());
-  for (const Joint& joint : skeleton.joints) motion.positions.push_back(joint.offset);
-  write_bvh(file, motion);
-}
-
-}  // namespace
-
 TEST_CASE("clips are put on another skeleton; the map can be written, edited and given") {
   const TestFolder folder;
   REQUIRE(call("synth clips --clips 3 --seconds 2").status == 0);
-  write_skeleton("unreal.bvh", unreal());
+  write_bvh("unreal.bvh", at_rest(unreal()));
   const Said said =
       call("retarget clips --to unreal.bvh --out made --save-map map.tsv --html page.html --clean feet");
   CHECK_MESSAGE(said.status == 0, said.text);
@@ -62,7 +48,7 @@ TEST_CASE("clips are put on another skeleton; the map can be written, edited and
   refused("clips --to unreal.bvh --out x --map none.tsv", "none.tsv");
   Skeleton nameless = unreal();
   for (std::size_t j = 0; j < nameless.size(); ++j) nameless.joints[j].name = "Bone" + std::to_string(j);
-  write_skeleton("nameless.bvh", nameless);
+  write_bvh("nameless.bvh", at_rest(nameless));
   refused("clips --to nameless.bvh --out x", "give a map of the joints");
   CHECK(!fs::exists("x"));
 }

@@ -18,13 +18,6 @@ namespace {
 
 Motion walk(double seconds = 2) { return procedural_motion(0, {.seconds = seconds}).motion; }
 
-/// A motion of no frames, for its skeleton.
-Motion standing(const Skeleton& skeleton) {
-  Motion out;
-  out.skeleton = skeleton;
-  return out;
-}
-
 constexpr std::array<std::pair<BodyPart, BodyPart>, 8> limbs{{{BodyPart::left_arm, BodyPart::left_forearm},
                                                               {BodyPart::left_forearm, BodyPart::left_hand},
                                                               {BodyPart::left_thigh, BodyPart::left_shin},
@@ -95,7 +88,7 @@ TEST_CASE("bodies are found in the names of many tools") {
 TEST_CASE("limbs point the same way on every body, and there and back is the same motion") {
   const Motion source = walk();
   for (const Skeleton& skeleton : {mixamo(), unreal(), vrm(), rigify(), in_a_pose()}) {
-    const Retargeter there(source, standing(skeleton));
+    const Retargeter there(source, at_rest(skeleton));
     const Motion made = there.standing(source);
     REQUIRE(made.frames == source.frames);
     CHECK(limbs_apart(source, there.map().from, made, there.map().to) < 1e-6);
@@ -106,7 +99,7 @@ TEST_CASE("limbs point the same way on every body, and there and back is the sam
       for (std::size_t j = 1; j < skeleton.size(); ++j)
         if (j != joint_of(there.map().to, BodyPart::hips))
           REQUIRE(made.position(f, j) == skeleton.joints[j].offset);
-    const Retargeter back(standing(there.skeleton()), standing(source.skeleton));
+    const Retargeter back(at_rest(there.skeleton()), at_rest(source.skeleton));
     const Motion again = back(there(source));
     const std::vector<Vec3> is = joint_positions(again), was = joint_positions(source);
     const std::vector<Quat> turned = joint_rotations(again), before = joint_rotations(source);
@@ -122,7 +115,7 @@ TEST_CASE("limbs point the same way on every body, and there and back is the sam
 
 TEST_CASE("feet stand on the floor in proportion") {
   const Motion source = walk();
-  const Retargeter there(source, standing(mixamo()));
+  const Retargeter there(source, at_rest(mixamo()));
   CHECK(there.length_scale() == doctest::Approx(0.012));
   const double floor = floor_under(source);
   CHECK(std::abs(floor_under(there.standing(source)) - 0.012 * floor) < 1e-9);
@@ -133,9 +126,9 @@ TEST_CASE("a skeleton that is no body without rotations takes its reference from
   // The same motion in other local axes.
   const std::vector<Vec3> a = joint_positions(source), b = joint_positions(strange);
   for (std::size_t i = 0; i < a.size(); ++i) REQUIRE(length(subtract(a[i], b[i])) < 1e-9);
-  CHECK(says(message_of([&] { Retargeter(standing(strange.skeleton), standing(mixamo())); }),
+  CHECK(says(message_of([&] { Retargeter(slice(strange, 0, 0), at_rest(mixamo())); }),
              "does not stand upright"));
-  const Retargeter there(strange, standing(mixamo()));
+  const Retargeter there(strange, at_rest(mixamo()));
   const Motion made = there.standing(strange);
   CHECK(limbs_apart(strange, there.map().from, made, there.map().to) < 1e-6);
   const Retargeter back(
@@ -179,7 +172,7 @@ TEST_CASE("spines of other lengths share the bend; what the source lacks keeps i
   };
   for (const std::size_t count : {1u, 2u, 3u, 5u, 7u}) {
     const Skeleton other = with_spine(count);
-    const Retargeter there(bent, standing(other));
+    const Retargeter there(bent, at_rest(other));
     const Motion made = there(bent);
     const std::vector<Quat> world = joint_rotations(made);
     double most = 0;
@@ -192,7 +185,7 @@ TEST_CASE("spines of other lengths share the bend; what the source lacks keeps i
     if (count >= 3) CHECK(most < 0.201);  // no joint bends more than the source's
   }
   const Skeleton mannequin = unreal();
-  const Motion made = Retargeter(walk(), standing(mannequin))(walk());
+  const Motion made = Retargeter(walk(), at_rest(mannequin))(walk());
   const auto twist = static_cast<std::size_t>(mannequin.find("upperarm_twist_01_l"));
   CHECK(angle_between(made.rotation(9, twist), Quat{}) < 1e-12);
   CHECK(made.rotation(9, 0) == Quat{});
@@ -222,7 +215,7 @@ TEST_CASE("maps are written, edited and read; mistakes are named") {
       << "hips\tpelvis\tHips\nleft thigh\tthigh_l\tLeftUpLeg\nright thigh\tthigh_r\tRightUpLeg\n"
          "left shin\tcalf_l\tLeftLeg\nright shin\tcalf_r\tRightLeg\nleft foot\tfoot_l\tLeftFoot\n"
          "right foot\tfoot_r\tRightFoot\n";
-  const Motion made = Retargeter(walk(), standing(to), read_joint_map(file, from, to))(walk());
+  const Motion made = Retargeter(walk(), at_rest(to), read_joint_map(file, from, to))(walk());
   CHECK(made.rotation(5, static_cast<std::size_t>(to.find("upperarm_l"))) == Quat{});
   CHECK(made.rotation(5, static_cast<std::size_t>(to.find("thigh_l"))) != Quat{});
 }

@@ -42,6 +42,16 @@ inline std::map<std::string, std::string> both_sides(const std::map<std::string,
   return out;
 }
 
+/// One frame of the skeleton without rotations.
+inline motion::Motion at_rest(const motion::Skeleton& skeleton) {
+  motion::Motion out;
+  out.skeleton = skeleton;
+  out.rate = 30, out.frames = 1;
+  out.rotations.resize(skeleton.size());
+  for (const motion::Joint& joint : skeleton.joints) out.positions.push_back(joint.offset);
+  return out;
+}
+
 inline motion::Skeleton mixamo() { return renamed({}, "mixamorig:", 0.01, 1.2); }
 
 inline motion::Skeleton unreal() {

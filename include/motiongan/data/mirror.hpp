@@ -38,7 +38,7 @@ inline std::vector<std::size_t> counterparts(const Skeleton& skeleton) {
 
 /// The axis, x or z, along which the body's sides lie apart at rest.
 inline std::size_t side_axis(const Skeleton& skeleton, const std::vector<std::size_t>& counterpart) {
-  const std::vector<Vec3> rest = body_side_detail::rest_positions(skeleton);
+  const std::vector<Vec3> rest = rest_positions(skeleton);
   double x = 0, z = 0;
   for (std::size_t j = 0; j < skeleton.size(); ++j) {
     const Vec3 apart = subtract(rest[j], rest[counterpart[j]]);

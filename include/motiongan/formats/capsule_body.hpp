@@ -66,11 +66,7 @@ inline CapsuleBody capsule_body(const Skeleton& skeleton, double scale) {
   require(skeleton.size() < 65536, "a body of ", skeleton.size(), " joints, expected fewer than 65536");
   const double leg = body_unit(skeleton) * scale, thin = 0.02 * leg, thick = 0.07 * leg;
   CapsuleBody out;
-  for (const Joint& joint : skeleton.joints) {
-    const Vec3 offset = motion::scale(joint.offset, scale);
-    out.rest.push_back(joint.parent < 0 ? offset
-                                        : add(out.rest[static_cast<std::size_t>(joint.parent)], offset));
-  }
+  for (const Vec3& place : rest_positions(skeleton)) out.rest.push_back(motion::scale(place, scale));
   const auto below = children(skeleton);
   const auto bone = [&](std::size_t joint, const Vec3& offset) {
     const Vec3 along = motion::scale(offset, scale);

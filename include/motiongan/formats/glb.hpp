@@ -1,20 +1,17 @@
 // Writing glTF 2.0 binaries (GLB): skeletons, their animations and a simple body.
 #pragma once
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
-#include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/formats/capsule_body.hpp"
-#include "motiongan/formats/text_file.hpp"
 #include "motiongan/io/atomic_file.hpp"
 #include "motiongan/motion/feet.hpp"
 #include "motiongan/motion/kinematics.hpp"
@@ -81,7 +78,6 @@ class Document {
   /// The whole file.
   std::string file() {
     while (bytes_.size() % 4 != 0) bytes_ += '\0';
-    json_["asset"] = {{"version", "2.0"}, {"generator", "motiongan"}};
     json_["buffers"] = Json::array({{{"byteLength", bytes_.size()}}});
     std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
     while (text.size() % 4 != 0) text += ' ';
@@ -100,7 +96,9 @@ class Document {
   }
 
  private:
-  Json json_ = Json::object();
+  Json json_{{"asset", {{"version", "2.0"}, {"generator", "motiongan"}}},
+             {"scene", 0},
+             {"scenes", Json::array({{{"nodes", Json::array()}}})}};
   std::string bytes_;
 };
 
@@ -214,8 +212,6 @@ inline void add_animation(Document& document, const NamedMotion& named, const No
 inline std::string glb_file(std::span<const NamedMotion> motions, const GlbOptions& options = {}) {
   require(!motions.empty(), "there are no motions to write");
   glb_detail::Document document;
-  document["scene"] = 0;
-  document["scenes"] = nlohmann::json::array({{{"nodes", nlohmann::json::array()}}});
   std::vector<std::pair<const Skeleton*, glb_detail::Nodes>> skeletons;
   for (const NamedMotion& named : motions) {
     const Motion& motion = named.motion;

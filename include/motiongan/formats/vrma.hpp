@@ -52,8 +52,6 @@ inline std::string vrma_file(const std::string& name, const Motion& motion) {
   avatar.skeleton = vrm_skeleton();
   const NamedMotion made{name, Retargeter(motion, avatar).standing(motion)};
   glb_detail::Document document;
-  document["scene"] = 0;
-  document["scenes"] = nlohmann::json::array({{{"nodes", nlohmann::json::array()}}});
   const glb_detail::Nodes nodes =
       glb_detail::add_skeleton(document, made.motion.skeleton, {.unit_metres = 1, .body = false}, "avatar");
   glb_detail::add_animation(document, made, nodes);

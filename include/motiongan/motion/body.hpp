@@ -77,7 +77,7 @@ bool walks_under_z(const Skeleton& skeleton, std::size_t frames, const Root& roo
 /// The axis along which the body stands at rest, from its feet to its head; nothing if joint names do not
 /// tell feet and head, or the rest pose stands along neither y nor z.
 inline std::optional<UpAxis> rest_up_axis(const Skeleton& skeleton) {
-  const std::vector<Vec3> rest = body_side_detail::rest_positions(skeleton);
+  const std::vector<Vec3> rest = rest_positions(skeleton);
   const auto body = body_detail::feet_to_head(skeleton, feet_detail::feet_by_name(skeleton),
                                               find_head(skeleton), rest.data());
   if (body && body_detail::points_along(*body, 1, 0.8)) return UpAxis::y;
@@ -184,7 +184,7 @@ inline PositionClip scaled(PositionClip clip, double factor) {
 /// the longest extent of the rest pose, which for arms stretched sideways is about the height too. 0 if no
 /// bone has a length.
 inline double body_height(const Skeleton& skeleton) {
-  const std::vector<Vec3> rest = body_side_detail::rest_positions(skeleton);
+  const std::vector<Vec3> rest = rest_positions(skeleton);
   // The lowest joint above both feet; without feet, the whole skeleton counts.
   const std::vector<std::size_t> feet = feet_detail::feet_by_name(skeleton);
   const std::vector<std::size_t> feet_below = feet_detail::count_below(skeleton, feet);

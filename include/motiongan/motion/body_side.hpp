@@ -64,14 +64,6 @@ using JointPair = std::pair<std::size_t, std::size_t>;
 
 namespace body_side_detail {
 
-/// Joint positions with all rotations zero, [joints].
-inline std::vector<Vec3> rest_positions(const Skeleton& skeleton) {
-  std::vector<Vec3> out;
-  for (const Joint& j : skeleton.joints)
-    out.push_back(j.parent < 0 ? j.offset : add(out[static_cast<std::size_t>(j.parent)], j.offset));
-  return out;
-}
-
 /// Pairs of mirrored joints, by name, among the children of `left` and of `right`.
 inline std::vector<JointPair> mirrored_children(const Skeleton& skeleton,
                                                 const std::vector<std::vector<std::size_t>>& below,
@@ -93,7 +85,7 @@ inline std::vector<JointPair> mirrored_children(const Skeleton& skeleton,
 inline std::vector<JointPair> across_body(const Skeleton& skeleton) {
   namespace detail = body_side_detail;
   const auto below = children(skeleton);
-  const std::vector<Vec3> rest = detail::rest_positions(skeleton);
+  const std::vector<Vec3> rest = rest_positions(skeleton);
   double size = 0;
   for (const double bone : bone_lengths(skeleton)) size += bone;
   const double apart = 1e-6 * size;

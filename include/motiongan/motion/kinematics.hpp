@@ -88,6 +88,14 @@ inline std::vector<double> bone_lengths(const Skeleton& skeleton) {
   return out;
 }
 
+/// Joint positions with all rotations zero, [joints].
+inline std::vector<Vec3> rest_positions(const Skeleton& skeleton) {
+  std::vector<Vec3> out;
+  for (const Joint& j : skeleton.joints)
+    out.push_back(j.parent < 0 ? j.offset : add(out[static_cast<std::size_t>(j.parent)], j.offset));
+  return out;
+}
+
 /// Children of every joint, [joints][...], in joint order.
 inline std::vector<std::vector<std::size_t>> children(const Skeleton& skeleton) {
   std::vector<std::vector<std::size_t>> out(skeleton.size());

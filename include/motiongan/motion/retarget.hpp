@@ -1,9 +1,9 @@
 // Motion of one body on another one: other joint names, proportions, rest pose and local axes.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -21,18 +21,18 @@ namespace retarget_detail {
 
 /// A skeleton in a pose, in the world.
 struct PosedBody {
-  std::vector<Quat> local, rotations;  ///< [joints]
-  std::vector<Vec3> positions;         ///< [joints], joint 0 at its offset
+  std::vector<Quat> rotations;  ///< [joints]
+  std::vector<Vec3> positions;  ///< [joints], joint 0 at its offset
 };
 
-inline PosedBody posed(const Skeleton& skeleton, std::vector<Quat> local) {
+inline PosedBody posed(const Skeleton& skeleton, const std::vector<Quat>& local) {
   Motion one;
   one.skeleton = skeleton;
   one.rate = 1, one.frames = 1;
   one.rotations = local;
   for (const Joint& joint : skeleton.joints) one.positions.push_back(joint.offset);
   GlobalPose global = forward_kinematics(one);
-  return {std::move(local), std::move(global.rotations), std::move(global.positions)};
+  return {std::move(global.rotations), std::move(global.positions)};
 }
 
 inline Vec3 unit(const Vec3& v) {
@@ -199,12 +199,17 @@ class Retargeter {
   }
 
  private:
+  /// The joints that stand on the floor: toes where there are any, as in find_feet().
+  static std::array<std::size_t, 2> feet_of(const BodyParts& body) {
+    using enum BodyPart;
+    return {joint_of(body, body.contains(left_toe) ? left_toe : left_foot),
+            joint_of(body, body.contains(right_toe) ? right_toe : right_foot)};
+  }
+
   static double floor_of(const Motion& motion, const BodyParts& body) {
-    std::vector<std::string> feet;
-    for (const auto& [toe, foot] : {std::pair{BodyPart::left_toe, BodyPart::left_foot},
-                                    std::pair{BodyPart::right_toe, BodyPart::right_foot}})
-      feet.push_back(motion.skeleton.joints[joint_of(body, body.contains(toe) ? toe : foot)].name);
-    return floor_under(motion, feet);
+    std::vector<std::string> names;
+    for (const std::size_t foot : feet_of(body)) names.push_back(motion.skeleton.joints[foot].name);
+    return floor_under(motion, names);
   }
 
   /// A target joint turns as a source joint, or between two.
@@ -302,13 +307,10 @@ class Retargeter {
     return sum;
   }
 
-  /// The height of the hips above the lower foot: toes where there are any, as in find_feet().
+  /// The height of the hips above the lower foot.
   static double above_floor(const BodyParts& body, const retarget_detail::PosedBody& pose, std::size_t hips) {
-    double lowest = std::numeric_limits<double>::max();
-    for (const auto& [toe, foot] : {std::pair{BodyPart::left_toe, BodyPart::left_foot},
-                                    std::pair{BodyPart::right_toe, BodyPart::right_foot}})
-      lowest = std::min(lowest, pose.positions[joint_of(body, body.contains(toe) ? toe : foot)][1]);
-    return pose.positions[hips][1] - lowest;
+    const auto [left, right] = feet_of(body);
+    return pose.positions[hips][1] - std::min(pose.positions[left][1], pose.positions[right][1]);
   }
 
   /// Links the joints of a spine or neck: those of the target divide the source's, which begins with `first`

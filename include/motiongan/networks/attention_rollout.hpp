@@ -11,7 +11,8 @@ namespace motiongan {
 /// The weights are copied at construction: construct a new rollout after a training step. They are kept in 16
 /// bits if AttentionGenerator::bfloat16() rounded them. Buffers are
 /// allocated by the first step and kept as long as frames and batch size stay the same; a step then takes
-/// only its result and the mixed frames of one layer, from the context's pool.
+/// only its result and the mixed frames of one layer, and what exact bones and fading are computed with, from
+/// the context's pool.
 class AttentionRollout {
  public:
   explicit AttentionRollout(const AttentionGenerator& generator)
