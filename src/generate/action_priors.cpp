@@ -95,7 +95,7 @@ std::vector<SplitLine> read_split(const fs::path& file) {
 
 GivenPrior read_prior(const fs::path& file, const motion::PositionFormat& format, const ActionDataArgs& data,
                       double seconds) {
-  return take_prior(read_source(file, file.stem().string(), format, data), format,
+  return take_prior(read_source(file, motion::clip_stem(file), format, data), format,
                     static_cast<std::size_t>(std::lround(seconds * format.rate)));
 }
 

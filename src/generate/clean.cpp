@@ -62,9 +62,7 @@ const Verb clean_verb{
           "clean",
           "Clean up clips: filter trembling, put floating bodies on the floor, hold standing feet still");
       const auto args = std::make_shared<CleanArgs>();
-      verb->add_option("FILES", args->files, "motion files (BVH, AMC, NPZ, NPY, CSV), or folders of them")
-          ->required()
-          ->type_name("");
+      verb->add_option("FILES", args->files, clip_files_help)->required()->type_name("");
       verb->add_option("--out", args->out, "folder for the cleaned clips, as BVH; created if missing")
           ->required()
           ->type_name("DIR");

@@ -156,7 +156,7 @@ int complete(const CompleteArgs& args) {
   check_text(args.text);
   check_samples(args.first_sample, args.count);
   const fs::path file = model_file(args.model), out = args.out;
-  const std::string clip = fs::path(args.prior).stem().string();
+  const std::string clip = motion::clip_stem(args.prior);
   const std::vector<fs::path> files =
       sample_files(out, clip + "_" + slug(args.text), args.first_sample, args.count, args.format);
   const std::vector<fs::path> inputs{file, args.prior, args.clips.bones, args.retargeting.skeleton,
@@ -176,7 +176,7 @@ int complete(const CompleteArgs& args) {
                 .before = prior.seed,
                 .frames = args.frames,
                 .rate = args.rate,
-                .scale = 1 / prior.scale,
+                .scale = args.retargeting.on() ? 1 : 1 / prior.scale,
                 .kept = prior.seed.frames + measured_length(prior)};
   if (shows) job.kept = std::max(job.kept, shown_frames(format.rate, args.rate));
   for (std::size_t i = 0; i < args.count; ++i)

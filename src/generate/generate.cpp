@@ -36,11 +36,6 @@ std::vector<std::string> all_texts(const GenerateArgs& args) {
   return texts;
 }
 
-/// Metres per unit of what is written; 0: unknown.
-double unit_of(const Dvgan& model, const GenerateArgs& args) {
-  return args.retargeting.on() ? 0 : model.format().space.unit_metres;
-}
-
 /// Generates all motions of one text and then writes them: for generators that make a whole window at once.
 /// Returns the motions.
 std::vector<motion::Motion> write_whole(const Dvgan& model, const std::string& text, const GenerateArgs& args,
@@ -54,7 +49,8 @@ std::vector<motion::Motion> write_whole(const Dvgan& model, const std::string& t
       drift->add(meter);
     }
     motions.push_back(args.cleaning.apply(body.put(model.format().to_motion(poses))));
-    write_motion(files[motions.size() - 1], motions.back(), args.rate, unit_of(model, args));
+    write_motion(files[motions.size() - 1], motions.back(), args.rate,
+                 body.unit_metres(model.format().space.unit_metres), body.character());
   }
   return motions;
 }
@@ -67,7 +63,7 @@ std::optional<std::vector<motion::Motion>> write_long(const Dvgan& model, const 
   StreamJob job{.files = files,
                 .frames = frames,
                 .rate = args.rate,
-                .unit_metres = unit_of(model, args),
+                .unit_metres = body.unit_metres(model.format().space.unit_metres),
                 .body = &body};
   for (std::size_t i = 0; i < files.size(); ++i)
     job.characters.push_back({.text = text,
@@ -95,7 +91,7 @@ int generate(const GenerateArgs& args, const fs::path& file) {
   make_folder(out);
 
   require(has_rotations(args.format), "--format ", args.format,
-          " writes positions, for class-conditioned models; use bvh, glb or vrma");
+          " writes positions, for class-conditioned models; use bvh, glb, fbx or vrma");
   TargetBody body(args.retargeting);
   DriftReport drift;
   DriftReport* const measured = !args.drift.empty() || made > 4 * format.frames ? &drift : nullptr;

@@ -184,12 +184,12 @@ int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const
     motion::in_two_threads(count, [&](std::size_t i) {
       if (shows || rotates) motions[i] = motion_from_positions(clips[i], priors[first + i].reference);
     });
-    if (args.retargeting.on())
+    if (rotates)
       for (motion::Motion& motion : motions) motion = body.put(motion);
     motion::in_two_threads(count, [&](std::size_t i) {
       motions[i] = args.cleaning.apply(std::move(motions[i]), args.with_prior ? format.frames : 0);
       write_action_clip(files[first + i], clips[i], motions[i], args.rate,
-                        args.retargeting.on() ? 0 : format.space.unit_metres);
+                        body.unit_metres(format.space.unit_metres), body.character());
     });
     for (std::size_t i = 0; shows && i < count; ++i) {
       const std::size_t given = !args.with_prior ? 0

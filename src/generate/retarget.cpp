@@ -41,7 +41,7 @@ int retarget_clips(const RetargetArgs& args) {
   check_outputs("--out", files, inputs);
   for (std::size_t i = 0; i < files.size(); ++i) {
     make_folder(files[i].parent_path());
-    write_motion(files[i], made[i]);
+    write_motion(files[i], made[i], 0, body.unit_metres(0), body.character());
   }
   fmt::print("wrote {} to {}\n", counted(files.size(), "clip"), out.string());
   if (!args.html.empty()) show_page(args.html, shown, "before and after retargeting", 2);
@@ -53,9 +53,7 @@ const Verb retarget_verb{
       CLI::App* verb = app.add_subcommand(
           "retarget", "Put clips on another skeleton, whatever its joint names, proportions and rest pose");
       const auto args = std::make_shared<RetargetArgs>();
-      verb->add_option("FILES", args->files, "motion files (BVH, AMC, NPZ, NPY, CSV), or folders of them")
-          ->required()
-          ->type_name("");
+      verb->add_option("FILES", args->files, clip_files_help)->required()->type_name("");
       verb->add_option("--to", args->retargeting.skeleton,
                        "a motion file with the skeleton that the clips are put on")
           ->required()

@@ -42,7 +42,8 @@ class Growing {
     if (piece.frames == 0) return;
     if (!file_)
       file_.emplace(path_, motion::scaled(piece.skeleton, job_.scale), frames_, rate_,
-                    job_.rate > 0 ? job_.rate : rate_, job_.unit_metres);
+                    job_.rate > 0 ? job_.rate : rate_, job_.unit_metres,
+                    job_.body != nullptr ? job_.body->character() : nullptr);
     file_->append(motion::scaled(piece, job_.scale));
     const std::size_t wanted = std::min(piece.frames, job_.kept - kept_.frames);
     if (wanted == 0) return;

@@ -25,6 +25,7 @@ std::string vector_text(const motion::Vec3& v) {
 const char* format_name(const fs::path& file) {
   const std::string extension = motion::extension_of(file);
   return extension == ".amc"                          ? "an AMC clip"
+         : motion::holds_scene(file)                  ? "an animated skeleton"
          : extension == ".npz"                        ? "an AMASS clip"
          : extension == ".npy" || extension == ".csv" ? "a clip of joint positions"
                                                       : "a BVH clip";
@@ -128,7 +129,7 @@ void print_log(const fs::path& file, const std::string& png) {
 
 int info(const InfoArgs& args) {
   const fs::path path = args.path;
-  require(fs::exists(path), path.string(), " does not exist");
+  require(fs::exists(motion::ClipPath(path).file), path.string(), " does not exist");
   check_output("--png", args.png, picture_output, {path, args.captions});
   const std::string extension = motion::extension_of(path);
   if (fs::is_directory(path)) {
@@ -154,7 +155,7 @@ const Verb info_verb{
           "info",
           "Show what a file or a folder contains: a model or checkpoint "
           "(.safetensors), the folder of a run, a clip\n"
-          "(BVH, AMC, NPZ, NPY, CSV), a folder of clips with their captions, the log.csv of "
+          "(BVH, GLB, FBX, AMC, NPZ, NPY, CSV), a folder of clips with their captions, the log.csv of "
           "a run.");
       const auto args = std::make_shared<InfoArgs>();
       verb->add_option("PATH", args->path, "file or folder")->required()->type_name("");

@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "motiongan/data/captions.hpp"
-#include "motiongan/formats/bvh.hpp"
 #include "motiongan/formats/read_motion.hpp"
 #include "motiongan/models/action_gan.hpp"
 #include "motiongan/models/dvgan.hpp"
@@ -11,8 +10,10 @@
 #include "motiongan/search/ranking.hpp"
 #include "shared/caption_report.hpp"
 #include "shared/clip_reading.hpp"
+#include "shared/motion_files.hpp"
 #include "shared/outputs.hpp"
 #include "shared/prompt.hpp"
+#include "shared/retargeting.hpp"
 #include "shared/show.hpp"
 
 namespace motiongan::command {
@@ -23,6 +24,8 @@ struct SearchArgs {
   std::size_t hypotheses = 16, top = 10, hop = 0;
   std::uint64_t seed = 1;
   bool windows = false;
+  std::string format = "bvh";
+  Retargeting retargeting;
   motion::ClipOptions clips;
   bool strict = false;
 };
@@ -43,7 +46,7 @@ struct Found {
 };
 
 /// A clip's name: its path below the collection, without extension.
-std::string clip_name(const std::string& path) { return fs::path(path).replace_extension().generic_string(); }
+std::string clip_name(const std::string& path) { return motion::without_extension(path).generic_string(); }
 
 /// The folder that the index's paths are relative to.
 fs::path home_of(const std::string& collection) {
@@ -56,7 +59,7 @@ std::vector<std::vector<motion::Caption>> read_captions(const SearchIndex& index
   std::vector<motion::ClipName> names;
   for (const SearchClip& clip : index.clips()) {
     files.push_back(home_of(args.collection) / clip.path);
-    names.push_back({clip_name(clip.path), clip_name(clip.path), fs::path(clip.path).stem().string()});
+    names.push_back({clip_name(clip.path), clip_name(clip.path), motion::clip_stem(clip.path)});
   }
   motion::CaptionMatch match =
       motion::find_captions(captions_for(args.collection, args.captions), files, names);
@@ -208,11 +211,17 @@ void show_results(const Found& found, const SearchArgs& args, const motion::Moti
 }
 
 void check_search_outputs(const SearchArgs& args, const fs::path& model) {
-  const std::vector<fs::path> inputs{model, args.collection, args.captions, args.clips.bones};
+  const std::vector<fs::path> inputs{model,
+                                     args.collection,
+                                     args.captions,
+                                     args.clips.bones,
+                                     args.retargeting.skeleton,
+                                     args.retargeting.map};
   check_output("--html", args.html, page_output, inputs);
+  check_output("--save-map", args.retargeting.save_map, table_output, inputs);
   if (args.json != "-") check_output("--json", args.json, json_output, inputs);
   if (!args.out.empty())
-    check_outputs("--out", sample_files(args.out, slug(args.text), 0, args.hypotheses), inputs);
+    check_outputs("--out", sample_files(args.out, slug(args.text), 0, args.hypotheses, args.format), inputs);
 }
 
 int search(const SearchArgs& args) {
@@ -222,6 +231,10 @@ int search(const SearchArgs& args) {
   check_search_outputs(args, file);
   require(!holds_model<ActionGan>(io::SafeTensors::read(file)), file.string(),
           " generates motion for classes; a search needs a text-conditioned model (motiongan train dvgan)");
+  std::FILE* const report = args.json == "-" ? stderr : stdout;
+  require(!args.retargeting.on() || !args.out.empty(),
+          "--skeleton puts the hypotheses that --out writes on another skeleton; give --out DIR");
+  TargetBody body(args.retargeting, report);
   const Context context;
   const Dvgan model = Dvgan::load(context, file);
   const motion::MotionFormat& format = model.format();
@@ -256,11 +269,12 @@ int search(const SearchArgs& args) {
   }
   if (!args.out.empty()) {
     make_folder(args.out);
-    const std::vector<fs::path> files = sample_files(args.out, slug(args.text), 0, found.hypotheses.size());
+    const std::vector<fs::path> files =
+        sample_files(args.out, slug(args.text), 0, found.hypotheses.size(), args.format);
     for (std::size_t h = 0; h < files.size(); ++h)
-      motion::write_bvh(files[h], format.to_motion(found.hypotheses[h]));
-    fmt::print(args.json == "-" ? stderr : stdout, "wrote the hypotheses ({}): {}\n", describe(format.space),
-               named(files));
+      write_motion(files[h], body.put(format.to_motion(found.hypotheses[h])), 0,
+                   body.unit_metres(format.space.unit_metres), body.character());
+    fmt::print(report, "wrote the hypotheses ({}): {}\n", describe(format.space), named(files));
   }
   if (!args.html.empty()) show_results(found, args, format);
   return 0;
@@ -308,7 +322,9 @@ const Verb search_verb{
           ->type_name("FILE");
       option("--html", args->html, "also write an HTML page: each clip next to its nearest hypotheses")
           ->type_name("FILE");
-      option("--out", args->out, "also write the hypotheses as BVH files here")->type_name("DIR");
+      option("--out", args->out, "also write the hypotheses here, as motion files")->type_name("DIR");
+      add_format_option(*verb, args->format);
+      add_skeleton_options(*verb, args->retargeting);
       verb->callback([&job, args] { job = [args] { return search(*args); }; });
     }};
 

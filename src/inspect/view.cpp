@@ -35,7 +35,7 @@ int view_clips(ViewArgs args) {
           if (args.rate > 0) motion = motion::resample(motion, args.rate, file.string());
           fmt::print("{}: {} at {} per second, {}\n", file.string(), counted(motion.frames, "frame"),
                      brief(motion.rate), duration(static_cast<double>(motion.frames) / motion.rate));
-          motions.push_back({file.stem().string(), std::move(motion)});
+          motions.push_back({motion::clip_stem(file), std::move(motion)});
         });
   }
   if (args.html.empty() && args.png.empty() && args.glb.empty()) args.html = "view.html";
@@ -57,9 +57,7 @@ const Verb view_verb{
     "view", [](CLI::App& app, Job& job) {
       CLI::App* verb = app.add_subcommand("view", "Show clips side by side as stick figures");
       const auto args = std::make_shared<ViewArgs>();
-      verb->add_option("FILES", args->files, "motion files (BVH, AMC, NPZ, NPY, CSV), or folders of them")
-          ->required()
-          ->type_name("");
+      verb->add_option("FILES", args->files, clip_files_help)->required()->type_name("");
       verb->add_option("--html", args->html, "HTML page to write [view.html, unless --png or --glb is given]")
           ->type_name("FILE");
       verb->add_option("--glb", args->glb,

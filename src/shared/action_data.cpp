@@ -10,7 +10,7 @@ namespace motiongan::command {
 
 void add_action_data_options(CLI::App& verb, ActionDataArgs& a, bool windows) {
   verb.add_option("FOLDER", a.folder,
-                  "folder of motion files (BVH, AMC, NPZ, NPY, CSV; searched recursively)")
+                  "folder of motion files (BVH, GLB, FBX, AMC, NPZ, NPY, CSV; searched recursively)")
       ->type_name("");
   std::vector<std::string_view> without{"folder"};
   if (!windows) without.insert(without.end(), {"frames", "rate", "root_track"});

@@ -1,4 +1,4 @@
-// Writes position clips as BVH, GLB, VRMA, CSV or NPY files.
+// Writes position clips as BVH, GLB, FBX, VRMA, CSV or NPY files.
 #pragma once
 #include "motiongan/data/action_source.hpp"
 #include "motiongan/formats/position_files.hpp"
@@ -18,9 +18,10 @@ inline bool has_rotations(const std::string& format) { return format != "csv" &&
 /// Writes the clip in the format of the file's extension, at `rate` (0: the clip's own). `motion` is the clip
 /// with rotations, which all but CSV and NPY need.
 inline void write_action_clip(const fs::path& file, const motion::PositionClip& clip,
-                              const motion::Motion& motion, double rate, double unit_metres = 0) {
+                              const motion::Motion& motion, double rate, double unit_metres = 0,
+                              const motion::GlbCharacter* character = nullptr) {
   const std::string kind = file.extension().string();
-  if (has_rotations(kind.substr(1))) return write_motion(file, motion, rate, unit_metres);
+  if (has_rotations(kind.substr(1))) return write_motion(file, motion, rate, unit_metres, character);
   const motion::PositionClip own = rate > 0 ? motion::resample(clip, rate) : motion::PositionClip{};
   const motion::PositionClip& written = rate > 0 ? own : clip;
   if (kind == ".csv")

@@ -8,6 +8,12 @@
 
 namespace motiongan::command {
 
+/// What a verb that takes clips says of its arguments.
+inline constexpr const char* clip_files_help =
+    "motion files (BVH, GLB, FBX, AMC, NPZ, NPY, CSV; moves.glb#walk: one animation of several), or folders "
+    "of "
+    "them";
+
 /// Adds --up, --scale, --fps, --first-frame and --bones; with `folders` also --skip-bad.
 void add_reading_options(CLI::App& verb, motion::ClipOptions& options, bool folders);
 

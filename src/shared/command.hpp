@@ -75,7 +75,7 @@ inline std::size_t columns_of(std::string_view utf8) {
 /// Prints a table with a line of headings; `align` has an 'l' or 'r' for each column.
 inline void print_table(const std::vector<std::string>& head,
                         const std::vector<std::vector<std::string>>& rows, std::string_view align,
-                        std::string_view indent = "") {
+                        std::string_view indent = "", std::FILE* to = stdout) {
   std::vector<std::size_t> widths;
   for (std::size_t c = 0; c < head.size(); ++c) {
     widths.push_back(columns_of(head[c]));
@@ -88,7 +88,7 @@ inline void print_table(const std::vector<std::string>& head,
       out += (c > 0 ? "  " : "") + (align[c] == 'r' ? pad + row[c] : row[c] + pad);
     }
     out.erase(out.find_last_not_of(' ') + 1);
-    fmt::print("{}\n", out);
+    fmt::print(to, "{}\n", out);
   };
   line(head);
   for (const auto& row : rows) line(row);

@@ -27,7 +27,8 @@ namespace output_detail {
 /// Whether a file in a folder of clips is a clip, a model, or says something of the clips.
 inline bool is_data(const std::filesystem::path& file) {
   const std::string ending = motion::extension_of(file), name = file.filename().string();
-  for (const std::string_view data : {".bvh", ".amc", ".asf", ".npz", ".npy", ".safetensors"})
+  for (const std::string_view data :
+       {".bvh", ".amc", ".asf", ".npz", ".npy", ".glb", ".vrm", ".vrma", ".fbx", ".safetensors"})
     if (ending == data) return true;
   for (const std::string_view list :
        {"captions.tsv", "captions.csv", "captions.json", "labels.tsv", "bones.tsv", "split.tsv", "log.csv"})
@@ -42,9 +43,10 @@ inline bool is_data(const std::filesystem::path& file) {
 
 /// Whether `output` is the file `input`, under this or another name, or one of the data in the folder
 /// `input`.
-inline bool replaces(const std::filesystem::path& output, const std::filesystem::path& input) {
+inline bool replaces(const std::filesystem::path& output, const std::filesystem::path& input_path) {
   namespace fs = std::filesystem;
   std::error_code problem;
+  const fs::path input = motion::ClipPath(input_path).file;
   if (input.empty() || !fs::is_regular_file(output, problem)) return false;
   if (fs::equivalent(output, input, problem)) return true;
   if (!fs::is_directory(input, problem)) return false;
@@ -78,8 +80,9 @@ inline void check_output(std::string_view option, const std::filesystem::path& f
           file.string(), " cannot be reached or written, expected the name of a file");
   const std::string ending = motion::extension_of(file);
   const auto is_ending = [&](std::string_view known) { return known == ending; };
-  for (const std::string_view known : {".bvh", ".amc", ".asf", ".npz", ".npy", ".safetensors", ".csv", ".tsv",
-                                       ".txt", ".json", ".html", ".htm", ".png", ".glb"})
+  for (const std::string_view known :
+       {".bvh", ".amc", ".asf", ".npz", ".npy", ".safetensors", ".csv", ".tsv", ".txt", ".json", ".html",
+        ".htm", ".png", ".glb", ".vrm", ".vrma", ".fbx"})
     require(known != ending || std::any_of(kind.endings.begin(), kind.endings.end(), is_ending), option, " ",
             file.string(), " would be ", kind.name, ", which cannot end in ", ending, "; use ",
             kind.endings.front(), ", and give input files before the option");

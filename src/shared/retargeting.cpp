@@ -1,6 +1,7 @@
 // Putting what a verb reads or makes on another skeleton.
 #include "shared/retargeting.hpp"
 
+#include "motiongan/motion/end_sites.hpp"
 #include "shared/clip_reading.hpp"
 #include "shared/show.hpp"
 
@@ -10,6 +11,8 @@ void add_map_options(CLI::App& verb, Retargeting& retargeting) {
   verb.add_option("--map", retargeting.map,
                   "which joints belong together, as --save-map writes it [by names]")
       ->type_name("FILE");
+  verb.add_flag("--end-sites", retargeting.end_sites,
+                "give joints without children an End Site, which some readers of BVH demand");
   verb.add_option("--save-map", retargeting.save_map, "also write which joints belong together, to be edited")
       ->type_name("FILE");
 }
@@ -21,18 +24,33 @@ void add_skeleton_options(CLI::App& verb, Retargeting& retargeting) {
   add_map_options(verb, retargeting);
 }
 
-TargetBody::TargetBody(const Retargeting& options) : options_(options) {
+TargetBody::TargetBody(const Retargeting& options, std::FILE* report) : options_(options), report_(report) {
   require(options.on() || (options.map.empty() && options.save_map.empty()),
           "--map and --save-map need --skeleton");
-  if (options.on()) body_ = read_clip(options.skeleton, {.first_frame = motion::FirstFrame::keep}).motion;
+  if (!options.on()) return;
+  const std::string extension = motion::extension_of(options.skeleton);
+  if (extension == ".glb" || extension == ".vrm") {
+    character_.emplace(options.skeleton);
+    body_ = character_->motion();
+    unit_metres_ = 1;
+    return;
+  }
+  motion::LoadedMotion loaded = read_clip(options.skeleton, {.first_frame = motion::FirstFrame::keep});
+  body_ = std::move(loaded.motion);
+  unit_metres_ = loaded.unit_metres;
 }
 
 motion::Motion TargetBody::put(const motion::Motion& motion) {
-  return options_.on() ? retargeter_of(motion).standing(motion) : motion;
+  return finished(options_.on() ? retargeter_of(motion).standing(motion) : motion);
 }
 
 motion::Motion TargetBody::put_piece(const motion::Motion& piece) {
-  return options_.on() ? retargeter_of(piece)(piece) : piece;
+  return finished(options_.on() ? retargeter_of(piece)(piece) : piece);
+}
+
+motion::Motion TargetBody::finished(motion::Motion motion) const {
+  if (options_.end_sites) motion.skeleton = motion::with_end_sites(std::move(motion.skeleton));
+  return motion;
 }
 
 const motion::Retargeter& TargetBody::retargeter_of(const motion::Motion& motion) {
@@ -59,9 +77,9 @@ void TargetBody::begin(const motion::Motion& motion) {
   };
   for (const auto& [part, name] : enum_names(motion::BodyPart{}))
     rows.push_back({name, names(map.from, part, from), names(map.to, part, to)});
-  print_table({"", "from", "to"}, rows, "lll");
-  fmt::print("lengths times {}\n", brief(retargeter_->length_scale()));
-  if (!options_.save_map.empty()) fmt::print("wrote {}\n", options_.save_map);
+  print_table({"", "from", "to"}, rows, "lll", "", report_);
+  fmt::print(report_, "lengths times {}\n", brief(retargeter_->length_scale()));
+  if (!options_.save_map.empty()) fmt::print(report_, "wrote {}\n", options_.save_map);
 }
 
 }  // namespace motiongan::command

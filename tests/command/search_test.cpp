@@ -72,6 +72,7 @@ TEST_CASE("search, with a model of two iterations") {
       CHECK(said.status == 1);
       CHECK_MESSAGE(said.has(why), said.text);
     };
+    refused("--model run --text walk --collection clips --skeleton unreal.bvh", "give --out DIR");
     refused("--model run --text walk --collection clips --out clips", "clips/walk_000.bvh is an input");
     fs::create_directories("none");
     refused("--model run --text walk --collection none", "have no .bvh, .amc");

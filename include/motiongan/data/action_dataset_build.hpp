@@ -257,7 +257,7 @@ inline ActionDataset ActionDataset::from_folder(const std::filesystem::path& fol
     const auto load = [file = files[i], id = ids[i], &options](int root, const LoadChange& change) {
       return detail::load_file(file, id, options, root, change);
     };
-    sources.push_back({ids[i], files[i].stem().string(), {}, load});
+    sources.push_back({ids[i], clip_stem(files[i]), {}, load});
     if (options.folders) sources.back().label = label_from_folder(files[i], folder_or_file);
   }
   return detail::build(sources, nullptr, options);

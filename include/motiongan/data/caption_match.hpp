@@ -12,6 +12,7 @@
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/data/caption_file.hpp"
+#include "motiongan/formats/clip_files.hpp"
 
 namespace motiongan::motion {
 
@@ -28,10 +29,10 @@ inline std::vector<ClipName> clip_names(std::span<const std::filesystem::path> f
                                         const std::filesystem::path& folder) {
   std::vector<ClipName> out;
   for (std::size_t i = 0; i < files.size(); ++i) {
-    const std::string stem = files[i].stem().string();
+    const std::string stem = clip_stem(files[i]);
     std::filesystem::path below = files[i].lexically_relative(folder);
     const bool is_file = below.empty() || below == ".";
-    out.push_back({ids[i], is_file ? stem : below.replace_extension().generic_string(), stem});
+    out.push_back({ids[i], is_file ? stem : without_extension(below).generic_string(), stem});
   }
   return out;
 }

@@ -115,7 +115,7 @@ inline CaptionFile read_captions_beside(std::span<const std::filesystem::path> f
   for (std::size_t i = 0; i < files.size(); ++i) {
     const std::filesystem::path folder = files[i].parent_path();
     for (const auto& place : {folder, folder / "texts", (folder / ".." / "texts").lexically_normal()}) {
-      const std::filesystem::path text = folders.find(place, files[i].stem().string());
+      const std::filesystem::path text = folders.find(place, clip_stem(files[i]));
       if (text.empty()) continue;
       out.name = "the .txt files beside the clips";
       caption_detail::add_clip_text(out, names[i].path, text);

@@ -17,7 +17,36 @@ namespace motiongan::motion {
 inline std::string extension_of(const std::filesystem::path& file) {
   std::string text = file.extension().string();
   for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return text;
+  const std::size_t mark = text.find('#');  // of an animation, see ClipPath
+  return text.substr(0, mark);
+}
+
+/// A clip among several in a file: "moves.glb#walk" is the animation "walk" of "moves.glb".
+struct ClipPath {
+  std::filesystem::path file;
+  std::string animation;  ///< empty: the file's only one, or its first
+
+  explicit ClipPath(const std::filesystem::path& path) : file(path) {
+    const std::string name = path.filename().string(), last = path.extension().string();
+    const std::size_t mark = last.find('#');
+    if (mark == std::string::npos || mark < 2) return;
+    animation = last.substr(mark + 1);
+    file = path.parent_path() / name.substr(0, name.size() - last.size() + mark);
+  }
+};
+
+/// The path of a clip without its extension, with `_` before the name of an animation: "01/moves_walk".
+inline std::filesystem::path without_extension(const std::filesystem::path& path) {
+  const ClipPath clip(path);
+  std::filesystem::path out = clip.file;
+  out.replace_extension();
+  if (!clip.animation.empty()) out += "_" + clip.animation;
+  return out;
+}
+
+/// The name of a clip: its file's name without extension.
+inline std::string clip_stem(const std::filesystem::path& path) {
+  return without_extension(path.filename()).string();
 }
 
 /// All files with one of the extensions (".bvh", in any case) in a folder and its subfolders, sorted, except
@@ -69,12 +98,12 @@ inline std::vector<std::filesystem::path> find_clip_files(
 inline std::vector<std::string> clip_ids(const std::vector<std::filesystem::path>& files,
                                          const std::filesystem::path& folder) {
   std::map<std::string, int> uses;
-  for (const auto& file : files) ++uses[file.stem().string()];
+  for (const auto& file : files) ++uses[clip_stem(file)];
   std::vector<std::string> ids;
   for (const auto& file : files) {
-    const bool shared = uses[file.stem().string()] > 1;
-    auto path = file.lexically_relative(folder);
-    ids.push_back(shared ? path.replace_extension().generic_string() : file.stem().string());
+    const std::string stem = clip_stem(file);
+    ids.push_back(uses[stem] > 1 ? without_extension(file.lexically_relative(folder)).generic_string()
+                                 : stem);
   }
   return ids;
 }

@@ -5,13 +5,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <span>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/formats/capsule_body.hpp"
+#include "motiongan/formats/glb_document.hpp"
 #include "motiongan/io/atomic_file.hpp"
 #include "motiongan/motion/feet.hpp"
 #include "motiongan/motion/kinematics.hpp"
@@ -33,74 +34,24 @@ struct GlbOptions {
   bool body = true;        ///< a body of capsules, skinned to the joints, so that viewers show something
 };
 
+/// Metres per unit of a motion that is written in metres.
+inline double metres_per_unit(const Skeleton& skeleton, const GlbOptions& options) {
+  const double leg = body_unit(skeleton);
+  return options.unit_metres > 0 ? options.unit_metres : leg > 0 ? typical_leg / leg : 1;
+}
+
+/// Throws Error if the motion has no frames, a skeleton without joints or a value that is not finite.
+inline void check_writable(const NamedMotion& named) {
+  const Motion& motion = named.motion;
+  check_motion(motion);
+  require(motion.frames > 0 && motion.skeleton.size() > 0, "'", named.name,
+          "' has no frames or no joints and cannot be written");
+  for (const Vec3& p : motion.positions)
+    require(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]), "'", named.name,
+            "' has a position that is not a finite number");
+}
+
 namespace glb_detail {
-
-/// The parts of a file: its JSON and its binary buffer.
-class Document {
- public:
-  using Json = nlohmann::json;
-
-  /// Adds values as an accessor and returns its index. `kind` is glTF's: "SCALAR", "VEC3", ...; `width` its
-  /// number of values. With `bounds`, the smallest and largest values are given, as glTF asks for positions
-  /// and times. `target` is the kind of buffer view; 0: none.
-  template <class T>
-  std::size_t add(const std::vector<T>& values, const char* kind, std::size_t width, bool bounds = false,
-                  int target = 0) {
-    constexpr int type = std::is_same_v<T, float> ? 5126 : std::is_same_v<T, std::uint16_t> ? 5123 : 5125;
-    while (bytes_.size() % 4 != 0) bytes_ += '\0';
-    Json view = {{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", values.size() * sizeof(T)}};
-    if (target != 0) view["target"] = target;
-    // glTF is little-endian, as are all machines that this library runs on.
-    bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
-    json_["bufferViews"].push_back(std::move(view));
-    Json accessor = {{"bufferView", json_["bufferViews"].size() - 1},
-                     {"componentType", type},
-                     {"count", values.size() / width},
-                     {"type", kind}};
-    if (bounds) {
-      std::vector<T> least(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(width)), most = least;
-      for (std::size_t i = 0; i < values.size(); ++i) {
-        least[i % width] = std::min(least[i % width], values[i]);
-        most[i % width] = std::max(most[i % width], values[i]);
-      }
-      accessor["min"] = least, accessor["max"] = most;
-    }
-    return push("accessors", std::move(accessor));
-  }
-
-  /// Appends to a list of the document and returns the index.
-  std::size_t push(const char* list, Json value) {
-    json_[list].push_back(std::move(value));
-    return json_[list].size() - 1;
-  }
-  Json& operator[](const char* key) { return json_[key]; }
-
-  /// The whole file.
-  std::string file() {
-    while (bytes_.size() % 4 != 0) bytes_ += '\0';
-    json_["buffers"] = Json::array({{{"byteLength", bytes_.size()}}});
-    std::string text = json_.dump(-1, ' ', false, Json::error_handler_t::replace);
-    while (text.size() % 4 != 0) text += ' ';
-    std::string out;
-    const auto word = [&](std::size_t value) {
-      require(value < (std::uint64_t{1} << 32), "a GLB file of ", value,
-              " bytes: at most 4 GiB are possible; ", "write fewer or shorter motions to it");
-      const auto v = static_cast<std::uint32_t>(value);
-      out.append(reinterpret_cast<const char*>(&v), 4);
-    };
-    out += "glTF";
-    word(2), word(12 + 8 + text.size() + 8 + bytes_.size());
-    word(text.size()), out += "JSON" + text;
-    word(bytes_.size()), out.append("BIN\0", 4), out += bytes_;
-    return out;
-  }
-
- private:
-  Json json_{{"asset", {{"version", "2.0"}, {"generator", "motiongan"}}},
-             {"scene", 0},
-             {"scenes", Json::array({{{"nodes", Json::array()}}})}};
-  std::string bytes_;
-};
 
 inline void append(std::vector<float>& out, const Vec3& v) {
   for (const double x : v) out.push_back(static_cast<float>(x));
@@ -108,21 +59,22 @@ inline void append(std::vector<float>& out, const Vec3& v) {
 
 /// A skeleton's nodes in a document.
 struct Nodes {
-  std::size_t first = 0;  ///< node of joint 0; the others follow
-  double scale = 1;       ///< metres per unit
+  std::vector<std::size_t> of_joint;  ///< [joints]
+  double scale = 1;                   ///< metres per unit
 };
 
 /// Adds a skeleton at rest under a node of its own, and its body.
 inline Nodes add_skeleton(Document& document, const Skeleton& skeleton, const GlbOptions& options,
                           const std::string& name) {
   Nodes out;
-  const double leg = body_unit(skeleton);
-  out.scale = options.unit_metres > 0 ? options.unit_metres : leg > 0 ? typical_leg / leg : 1;
+  out.scale = metres_per_unit(skeleton, options);
   const std::size_t top = document.push("nodes", {{"name", name}});
-  out.first = top + 1;
+  const std::size_t first = top + 1;
+  out.of_joint.resize(skeleton.size());
+  std::iota(out.of_joint.begin(), out.of_joint.end(), first);
   std::vector<nlohmann::json> below(skeleton.size(), nlohmann::json::array());
   for (std::size_t j = 1; j < skeleton.size(); ++j)
-    below[static_cast<std::size_t>(skeleton.joints[j].parent)].push_back(out.first + j);
+    below[static_cast<std::size_t>(skeleton.joints[j].parent)].push_back(first + j);
   for (std::size_t j = 0; j < skeleton.size(); ++j) {
     const Vec3 offset = scale(skeleton.joints[j].offset, out.scale);
     nlohmann::json node = {{"name", skeleton.joints[j].name},
@@ -130,13 +82,13 @@ inline Nodes add_skeleton(Document& document, const Skeleton& skeleton, const Gl
     if (!below[j].empty()) node["children"] = below[j];
     document.push("nodes", std::move(node));
   }
-  nlohmann::json parts = {out.first};
+  nlohmann::json parts = {first};
   if (options.body) {
     const CapsuleBody body = capsule_body(skeleton, out.scale);
     nlohmann::json joints = nlohmann::json::array();
     std::vector<float> to_joint;  // inverse bind matrices, column by column
     for (std::size_t j = 0; j < skeleton.size(); ++j) {
-      joints.push_back(out.first + j);
+      joints.push_back(first + j);
       const Vec3& at = body.rest[j];
       for (const double v :
            {1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -at[0], -at[1], -at[2], 1.0})
@@ -145,7 +97,7 @@ inline Nodes add_skeleton(Document& document, const Skeleton& skeleton, const Gl
     constexpr int vertices = 34962, triangles = 34963;  // glTF's kinds of buffer views
     const std::size_t skin =
         document.push("skins", {{"joints", joints},
-                                {"skeleton", out.first},
+                                {"skeleton", first},
                                 {"inverseBindMatrices", document.add(to_joint, "MAT4", 16)}});
     const nlohmann::json attributes = {{"POSITION", document.add(body.positions, "VEC3", 3, true, vertices)},
                                        {"NORMAL", document.add(body.normals, "VEC3", 3, false, vertices)},
@@ -182,7 +134,7 @@ inline void add_animation(Document& document, const NamedMotion& named, const No
   nlohmann::json samplers = nlohmann::json::array(), channels = nlohmann::json::array();
   const auto channel = [&](std::size_t joint, const char* path, std::size_t output) {
     channels.push_back(
-        {{"sampler", samplers.size()}, {"target", {{"node", nodes.first + joint}, {"path", path}}}});
+        {{"sampler", samplers.size()}, {"target", {{"node", nodes.of_joint[joint]}, {"path", path}}}});
     samplers.push_back({{"input", input}, {"output", output}, {"interpolation", "LINEAR"}});
   };
   for (std::size_t j = 0; j < joints; ++j) {
@@ -214,13 +166,8 @@ inline std::string glb_file(std::span<const NamedMotion> motions, const GlbOptio
   glb_detail::Document document;
   std::vector<std::pair<const Skeleton*, glb_detail::Nodes>> skeletons;
   for (const NamedMotion& named : motions) {
+    check_writable(named);
     const Motion& motion = named.motion;
-    check_motion(motion);
-    require(motion.frames > 0 && motion.skeleton.size() > 0, "'", named.name,
-            "' has no frames or no joints and cannot be written as GLB");
-    for (const Vec3& p : motion.positions)
-      require(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]), "'", named.name,
-              "' has a position that is not a finite number");
     auto at = std::find_if(skeletons.begin(), skeletons.end(),
                            [&](const auto& known) { return *known.first == motion.skeleton; });
     if (at == skeletons.end()) {

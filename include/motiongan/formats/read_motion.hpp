@@ -18,6 +18,7 @@
 #include "motiongan/formats/clip_files.hpp"
 #include "motiongan/formats/clip_options.hpp"
 #include "motiongan/formats/position_files.hpp"
+#include "motiongan/formats/scene_files.hpp"
 #include "motiongan/motion/body.hpp"
 #include "motiongan/motion/first_frame.hpp"
 #include "motiongan/motion/measured_bones.hpp"
@@ -101,6 +102,11 @@ inline void read_rotations(const std::filesystem::path& file, const ClipOptions&
     out.motion =
         parse_amc(read_text(file, "AMC file"), asf, options.fps > 0 ? options.fps : 120, file.string());
     if (out.unit_metres <= 0) out.unit_metres = asf.unit_metres.value_or(0);
+  } else if (holds_scene(file)) {
+    double unit = 0;
+    out.motion = read_scene_motion(file, options.fps, unit, out.notes);
+    if (out.unit_metres <= 0) out.unit_metres = unit;
+    out.up = UpAxis::y;
   } else {
     Clip clip = read_bvh(file);
     out.notes = std::move(clip.notes);
@@ -157,6 +163,26 @@ inline PositionClip depth_first(PositionClip clip) {
   return out;
 }
 
+/// Puts a ClipPath for each animation in the place of files with several, and leaves out those without any.
+/// What cannot be read stays, for its reader to say so.
+inline void list_animations(std::vector<std::filesystem::path>& files) {
+  std::vector<std::filesystem::path> out;
+  for (std::filesystem::path& file : files) {
+    std::error_code ignored;
+    if (!holds_scene(file) || !std::filesystem::is_regular_file(file, ignored)) {
+      out.push_back(std::move(file));
+      continue;
+    }
+    try {
+      const std::vector<std::filesystem::path> clips = clips_of_scene(file);
+      out.insert(out.end(), clips.begin(), clips.end());
+    } catch (const Error&) {
+      out.push_back(std::move(file));
+    }
+  }
+  files = std::move(out);
+}
+
 }  // namespace read_motion_detail
 
 /// Reads joint positions (.csv, .npy). `rate` is that of a file which does not say and for which options.fps
@@ -182,7 +208,8 @@ inline LoadedPositions read_positions(const std::filesystem::path& file, const C
 }
 
 /// Reads a motion: .bvh; .amc, with its .asf file (options.bones, or find_asf); .npz of AMASS, z up by
-/// definition; joint positions (.csv, .npy), from which rotations are computed. The result has y
+/// definition; an animation of .glb, .vrm and .vrma, which "moves.glb#walk" names (options.fps is the rate
+/// at which it is read); joint positions (.csv, .npy), from which rotations are computed. The result has y
 /// up, no T-pose before it, its root's track in world coordinates, and bones measured where the file holds
 /// them in position channels. Throws Error for a file that cannot be read.
 inline LoadedMotion read_motion(const std::filesystem::path& file, const ClipOptions& options = {}) {
@@ -211,7 +238,7 @@ inline InspectedMotion inspect_motion(const std::filesystem::path& file, const C
   const std::string extension = extension_of(file);
   Clip clip;
   std::vector<std::size_t> sample;
-  if (extension != ".npz" && extension != ".amc" && !holds_positions(file)) {
+  if (extension != ".npz" && extension != ".amc" && !holds_positions(file) && !holds_scene(file)) {
     clip = read_bvh(file);
     sample = sampled_frames(clip.frames);
   }
@@ -241,13 +268,22 @@ inline InspectedMotion inspect_motion(const std::filesystem::path& file, const C
 }
 
 /// All motion files in a folder and its subfolders, sorted, except those in `without`; or the file itself:
-/// .bvh, .amc, .npz, .npy, and .csv whose first line names joint positions. Throws Error if there are none.
+/// .bvh, .amc, .npz, .npy, .csv whose first line names joint positions, and the animations of .glb, .vrm,
+/// .vrma (and .fbx, see scene_readers()), each as a ClipPath where a file has several. Throws Error if there
+/// are none.
 inline std::vector<std::filesystem::path> find_motion_files(
     const std::filesystem::path& where, const std::vector<std::filesystem::path>& without = {}) {
-  std::vector<std::filesystem::path> out =
-      find_clip_files(where, {".bvh", ".amc", ".npz", ".npy", ".csv"}, without);
+  if (!ClipPath(where).animation.empty()) return {where};
+  std::vector<std::string_view> extensions{".bvh", ".amc", ".npz", ".npy", ".csv"};
+  for (const auto& [extension, reader] : scene_readers()) extensions.push_back(extension);
+  std::vector<std::filesystem::path> out = find_clip_files(where, extensions, without);
   std::error_code problem;
-  if (!std::filesystem::is_directory(where, problem)) return out;
+  if (!std::filesystem::is_directory(where, problem)) {
+    if (!holds_scene(where)) return out;
+    out = clips_of_scene(where);
+    return out.empty() ? std::vector{where} : out;
+  }
+  read_motion_detail::list_animations(out);
   std::erase_if(out, [](const std::filesystem::path& file) {
     const std::string name = file.filename().string();
     if (name == "shape.npz" || name.ends_with("_shape.npz")) return true;  // AMASS's body shapes
@@ -261,7 +297,8 @@ inline std::vector<std::filesystem::path> find_motion_files(
     return !is_position_csv(head);  // a log, captions or labels
   });
   require(!out.empty(), "folder ", where.string(),
-          " and its subfolders have no motion file (.bvh, .amc, .npz, .npy, or .csv of joint positions)");
+          " and its subfolders have no motion file (.bvh, .amc, .npz, .npy, .glb with animations, or .csv of "
+          "joint positions)");
   return out;
 }
 

@@ -57,7 +57,7 @@ inline std::string vrma_file(const std::string& name, const Motion& motion) {
   glb_detail::add_animation(document, made, nodes);
   nlohmann::json bones;
   for (std::size_t j = 0; j < avatar.skeleton.size(); ++j)
-    bones[avatar.skeleton.joints[j].name] = {{"node", nodes.first + j}};
+    bones[avatar.skeleton.joints[j].name] = {{"node", nodes.of_joint[j]}};
   document["extensionsUsed"] = {"VRMC_vrm_animation"};
   document["extensions"]["VRMC_vrm_animation"] = {{"specVersion", "1.0"},
                                                   {"humanoid", {{"humanBones", bones}}}};

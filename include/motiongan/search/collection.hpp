@@ -135,9 +135,9 @@ inline SearchCollection open_search_collection(const std::filesystem::path& fold
   for (std::size_t i = 0; i < files.size(); ++i) {
     std::error_code problem;
     clips[i].path = files[i].native().substr(skip);
-    clips[i].size = static_cast<std::int64_t>(fs::file_size(files[i], problem));
-    clips[i].modified =
-        static_cast<std::int64_t>(fs::last_write_time(files[i], problem).time_since_epoch().count());
+    clips[i].size = static_cast<std::int64_t>(fs::file_size(motion::ClipPath(files[i]).file, problem));
+    clips[i].modified = static_cast<std::int64_t>(
+        fs::last_write_time(motion::ClipPath(files[i]).file, problem).time_since_epoch().count());
     const auto found = known.find(clips[i].path);
     if (found != known.end() && found->second->size == clips[i].size &&
         found->second->modified == clips[i].modified)
