@@ -139,6 +139,28 @@ TEST_CASE("a skeleton that is no body without rotations takes its reference from
   for (std::size_t i = 0; i < again.size(); ++i) REQUIRE(length(subtract(again[i], b[i])) < 1e-6);
 }
 
+TEST_CASE("feet point as the source's, however they stand in the frame that is the reference") {
+  // One frame, in which the body stands on one leg and points the other foot down.
+  Motion pointing = slice(walk(), 0, 1);
+  for (Quat& q : pointing.rotations) q = {};
+  const auto foot = static_cast<std::size_t>(pointing.skeleton.find("RightFoot"));
+  pointing.rotation(0, foot) = axis_rotation(0, 1.0);
+  const Motion source = walk(), strange = along_x(pointing);
+  const Retargeter there(source, strange);
+  const Motion made = there(source);
+  const std::vector<Vec3> was = joint_positions(source), is = joint_positions(made);
+  const std::size_t joints = source.skeleton.size(), other = made.skeleton.size();
+  for (const auto& [part, next] : {std::pair{BodyPart::left_foot, BodyPart::left_toe},
+                                   std::pair{BodyPart::right_foot, BodyPart::right_toe}})
+    for (std::size_t f = 0; f < source.frames; f += 5) {
+      const Vec3 a = subtract(was[f * joints + joint_of(there.map().from, next)],
+                              was[f * joints + joint_of(there.map().from, part)]),
+                 b = subtract(is[f * other + joint_of(there.map().to, next)],
+                              is[f * other + joint_of(there.map().to, part)]);
+      CHECK(dot(a, b) > (1 - 1e-9) * length(a) * length(b));
+    }
+}
+
 TEST_CASE("spines of other lengths share the bend; what the source lacks keeps its rest") {
   // A motion that bends only its spine, on a body with one spine joint less and one more.
   Motion bent = slice(walk(), 0, 1);

@@ -271,16 +271,21 @@ class Retargeter {
           if (links_[j]) links_[j]->align = lean;
   }
 
-  /// Bones of arms and legs point where the source's point; a hand goes on as the forearm does. So do feet
-  /// where a reference is no rest pose, in which they would be flat.
+  /// Bones of arms and legs point where the source's point; a hand goes on as the forearm does. So do feet,
+  /// and toes, where a reference is no rest pose, in which they would be flat.
   void point_limbs(const Quat& turn, const retarget_detail::PosedBody& source,
                    const retarget_detail::PosedBody& target) {
     using enum BodyPart;
-    for (const auto& [part, next] :
-         {std::pair{left_arm, left_forearm}, std::pair{left_forearm, left_hand},
-          std::pair{left_thigh, left_shin}, std::pair{left_shin, left_foot},
-          std::pair{right_arm, right_forearm}, std::pair{right_forearm, right_hand},
-          std::pair{right_thigh, right_shin}, std::pair{right_shin, right_foot}}) {
+    std::vector<std::pair<BodyPart, BodyPart>> bones{{left_arm, left_forearm},   {left_forearm, left_hand},
+                                                     {left_thigh, left_shin},    {left_shin, left_foot},
+                                                     {right_arm, right_forearm}, {right_forearm, right_hand},
+                                                     {right_thigh, right_shin},  {right_shin, right_foot}};
+    std::vector<std::pair<BodyPart, BodyPart>> ends{{left_hand, left_forearm}, {right_hand, right_forearm}};
+    if (!at_rest()) {
+      bones.insert(bones.end(), {{left_foot, left_toe}, {right_foot, right_toe}});
+      ends.insert(ends.end(), {{left_toe, left_foot}, {right_toe, right_foot}});
+    }
+    for (const auto& [part, next] : bones) {
       const auto to = first_of(map_.to, part), to_end = first_of(map_.to, next),
                  from = first_of(map_.from, part), from_end = first_of(map_.from, next);
       if (!to || !from || !to_end || !from_end) continue;
@@ -290,9 +295,8 @@ class Retargeter {
       if (length(is) > 0 && length(wish) > 0)
         links_[*to]->align = multiply(shortest_rotation(is, wish, {}), turn);
     }
-    for (const auto& [hand, forearm] :
-         {std::pair{left_hand, left_forearm}, std::pair{right_hand, right_forearm}})
-      if (const auto at = first_of(map_.to, hand), above = first_of(map_.to, forearm);
+    for (const auto& [end, before] : ends)
+      if (const auto at = first_of(map_.to, end), above = first_of(map_.to, before);
           at && above && links_[*at] && links_[*above])
         links_[*at]->align = links_[*above]->align;
   }
