@@ -110,6 +110,7 @@
 //
 #include "motiongan/sample/action_generate.hpp"
 #include "motiongan/sample/action_stream.hpp"
+#include "motiongan/sample/character_stream.hpp"
 #include "motiongan/sample/motion_stream.hpp"
 //
 #include "motiongan/search/collection.hpp"

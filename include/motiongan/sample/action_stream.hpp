@@ -102,15 +102,19 @@ class ActionStream {
   /// Advances all characters by T frames (one second), or by the first `frames` of them (1 .. T; 0: all T).
   /// Throws Error if frames is above T.
   void step(std::size_t frames = 0) {
-    if (frames == 0) frames = format_.frames;
-    require(frames <= format_.frames, "frames is ", frames, ", expected at most ", format_.frames,
-            ", the number the model makes per step");
-    std::vector<Character*> batch;
-    for (auto& entry : characters_) {
-      batch.push_back(&entry.second);
-      if (batch.size() == most_at_once_) move_on(batch, frames), batch.clear();
-    }
-    if (!batch.empty()) move_on(batch, frames);
+    std::vector<Character*> all;
+    for (auto& entry : characters_) all.push_back(&entry.second);
+    move_all(all, frames);
+  }
+  /// The same for these characters alone; the others stay as they are. Throws Error, before any moves, for an
+  /// unknown id or one given twice.
+  void step(std::span<const Id> ids, std::size_t frames = 0) {
+    std::map<Id, Character*> some;
+    for (const Id id : ids)
+      require(some.emplace(id, &character(id)).second, "character ", id, " is to be moved twice in a step");
+    std::vector<Character*> all;
+    for (const auto& [id, moved] : some) all.push_back(moved);
+    move_all(all, frames);
   }
 
   /// The frames of the last step as normalised poses [frames, dof]; valid until the next step. Throws Error
@@ -157,6 +161,15 @@ class ActionStream {
     if (rollout_) return rollout_->step(prior, classes, noise);
     const NoGrad values_only;
     return model_.baseline()(Var::constant(prior), Var::constant(classes), format_.frames).value();
+  }
+
+  /// Moves the characters in batches of at most most_at_once_.
+  void move_all(std::span<Character* const> all, std::size_t frames) {
+    if (frames == 0) frames = format_.frames;
+    require(frames <= format_.frames, "frames is ", frames, ", expected at most ", format_.frames,
+            ", the number the model makes per step");
+    for (std::size_t at = 0; at < all.size(); at += most_at_once_)
+      move_on(all.subspan(at, std::min(most_at_once_, all.size() - at)), frames);
   }
 
   void move_on(std::span<Character* const> batch, std::size_t frames) {
