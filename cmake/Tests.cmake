@@ -21,7 +21,7 @@ foreach(source IN LISTS sources)
   string(REGEX REPLACE "_test$" "" name "${name}")
   get_filename_component(folder "${source}" DIRECTORY)
   get_filename_component(folder "${folder}" NAME)
-  if(folder STREQUAL "command" AND NOT TARGET motiongan-command)
+  if((folder STREQUAL "command" AND NOT TARGET motiongan-command) OR (folder STREQUAL "c" AND NOT TARGET motiongan-c))
     continue()
   endif()
   set(target "${folder}_${name}")
@@ -31,11 +31,36 @@ foreach(source IN LISTS sources)
   target_compile_definitions(${target} PRIVATE MOTIONGAN_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
   own_test(${target} ${folder} ${target})
+  if(folder STREQUAL "c")
+    target_link_libraries(${target} PRIVATE motiongan::c)
+  endif()
   if(folder STREQUAL "command")
     add_dependencies(${target} motiongan-command)
     target_compile_definitions(${target} PRIVATE MOTIONGAN_COMMAND="$<TARGET_FILE:motiongan-command>")
   endif()
 endforeach()
+
+# The C interface as programs in C use it, with models that c_models writes for them and for the examples.
+if(TARGET motiongan-c)
+  set(motiongan_c_models "${PROJECT_BINARY_DIR}/tests/c-models")
+  own_program(c_models "${PROJECT_SOURCE_DIR}/tests/c/models.cpp")
+  set_target_properties(c_models PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+  own_test(c_models c c_models "${motiongan_c_models}")
+  set_tests_properties(c_models PROPERTIES FIXTURES_SETUP c_models)
+  file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/c/*_test.c")
+  foreach(source IN LISTS sources)
+    get_filename_component(name "${source}" NAME_WE)
+    string(REGEX REPLACE "_test$" "" name "${name}")
+    own_c_program(c_${name} "${source}")
+    set_target_properties(c_${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/tests")
+    own_test(c_${name} c c_${name} "${motiongan_c_models}")
+    set_tests_properties(c_${name} PROPERTIES FIXTURES_REQUIRED c_models)
+  endforeach()
+  own_test(c_exports c ${CMAKE_COMMAND} "-DLIBRARY=$<TARGET_FILE:motiongan-c>"
+    "-DHEADER=${PROJECT_SOURCE_DIR}/include/motiongan.h" "-DNM=${CMAKE_NM}"
+    -P "${PROJECT_SOURCE_DIR}/tests/c/exports.cmake")
+  set_tests_properties(c_exports PROPERTIES SKIP_REGULAR_EXPRESSION "skipped:")
+endif()
 
 # Two translation units that include the whole library: a function without `inline` fails to link.
 file(GLOB umbrella CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/include/motiongan.hpp")
@@ -45,9 +70,14 @@ if(umbrella)
   own_test(second_unit tests second_unit)
 
   # A separate project, built against an install tree.
+  set(with_c OFF)
+  if(TARGET motiongan-c AND NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+    set(with_c ON)
+  endif()
   own_test(install_consumer install ${CMAKE_COMMAND}
     "-DBUILD_DIR=${PROJECT_BINARY_DIR}" "-DSOURCE_DIR=${PROJECT_SOURCE_DIR}/tests/install"
     "-DGENERATOR=${CMAKE_GENERATOR}" "-DCXX=${CMAKE_CXX_COMPILER}" "-DLAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}"
+    "-DCC=${CMAKE_C_COMPILER}" "-DWITH_C=${with_c}"
     -P "${PROJECT_SOURCE_DIR}/tests/install/run.cmake")
 endif()
 

@@ -13,7 +13,10 @@ endfunction()
 
 run("${CMAKE_COMMAND}" --install "${BUILD_DIR}" --prefix "${prefix}")
 run("${CMAKE_COMMAND}" -S "${SOURCE_DIR}" -B "${consumer}" -G "${GENERATOR}" "-DCMAKE_PREFIX_PATH=${prefix}"
-  "-DCMAKE_CXX_COMPILER=${CXX}" "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}" -DCMAKE_BUILD_TYPE=Debug
-  --no-warn-unused-cli)
+  "-DCMAKE_CXX_COMPILER=${CXX}" "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}" "-DCMAKE_C_COMPILER=${CC}" "-DWITH_C=${WITH_C}"
+  -DCMAKE_BUILD_TYPE=Debug --no-warn-unused-cli)
 run("${CMAKE_COMMAND}" --build "${consumer}")
 run("${consumer}/consumer")
+if(WITH_C)
+  run("${consumer}/consumer_c")
+endif()

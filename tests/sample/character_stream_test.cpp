@@ -82,26 +82,30 @@ TEST_CASE("characters of a model of texts are those of MotionStream") {
   CHECK_FALSE(stream.has_classes());
   CHECK(stream.rate() == 5);
   CHECK(stream.skeleton() == expected.skeleton());
+  // The stream inside adds those with shorter priors first.
   const std::array<CharacterStart, 2> both{
-      CharacterStart{.prompt = "walk", .seed = 5, .at = motion::RootTrack{30, -7, 1}},
-      CharacterStart{.prompt = "jump", .sample = 2, .prior = &clip(1)}};
+      CharacterStart{.prompt = "jump", .sample = 2, .prior = &clip(1)},
+      CharacterStart{.prompt = "walk", .seed = 5, .at = motion::RootTrack{30, -7, 1}}};
   const std::vector<CharacterStream::Id> ids = stream.add(both);
   const std::vector<CharacterId> others = expected.add(
-      {{.text = "walk", .seed = 5, .at = {30, -7, 1}}, {.text = "jump", .sample = 2, .prior = &clip(1)}});
+      {{.text = "jump", .sample = 2, .prior = &clip(1)}, {.text = "walk", .seed = 5, .at = {30, -7, 1}}});
+  CHECK(stream.ids() == ids);
   CharacterStream::Id third = 0;
   CharacterId other_third = 0;
   for (int frame = 0; frame < 12; ++frame) {
     if (frame == 3) third = stream.add({.prompt = "run"}), other_third = expected.add({.text = "run"});
-    if (frame == 5) stream.set_prompt(ids[0], "wave"), expected.set_text(others[0], "wave");
-    if (frame == 8) stream.remove(ids[1]), expected.remove(others[1]);
+    if (frame == 5) stream.set_prompt(ids[1], "wave"), expected.set_text(others[1], "wave");
+    if (frame == 8) stream.remove(ids[0]), expected.remove(others[0]);
     stream.step();
     expected.step();
-    CHECK(same(stream.motion(ids[0]), expected.motion(others[0])));
-    if (frame < 8) CHECK(same(stream.motion(ids[1]), expected.motion(others[1])));
+    CHECK(same(stream.motion(ids[1]), expected.motion(others[1])));
+    if (frame < 8) CHECK(same(stream.motion(ids[0]), expected.motion(others[0])));
     if (frame >= 3) CHECK(same(stream.motion(third), expected.motion(other_third)));
-    CHECK(stream.frames_left(ids[0]) == 0);
+    CHECK(stream.frames_left(ids[1]) == 0);
   }
-  CHECK(stream.ids() == std::vector{ids[0], third});
+  CHECK(stream.ids() == std::vector{ids[1], third});
+  CHECK(stream.contains(third));
+  CHECK_FALSE(stream.contains(ids[0]));
 }
 
 TEST_CASE("frames are read as rotations, positions and world positions") {

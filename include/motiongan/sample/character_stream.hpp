@@ -50,12 +50,18 @@ class CharacterStream {
 
   /// Throws Error for a model with a CNN generator. The weights are read at construction.
   explicit CharacterStream(const Dvgan& model)
-      : stream_(std::in_place_type<MotionStream>, model), skeleton_(model.format().skeleton()) {}
+      : stream_(std::in_place_type<MotionStream>, model), skeleton_(skeleton_of(model)) {}
   /// The weights are read at construction; the model must outlive the stream.
   explicit CharacterStream(const ActionGan& model)
-      : stream_(std::in_place_type<ActionStream>, model),
-        skeleton_(motion::with_bvh_channels(
-            motion::depth_first({"", model.format().skeleton(), model.format().rate, 0, {}}).skeleton)) {}
+      : stream_(std::in_place_type<ActionStream>, model), skeleton_(skeleton_of(model)) {}
+
+  /// The skeleton of the characters of a model, see skeleton().
+  static motion::Skeleton skeleton_of(const Dvgan& model) { return model.format().skeleton(); }
+  static motion::Skeleton skeleton_of(const ActionGan& model) {
+    const motion::PositionFormat& format = model.format();
+    return motion::with_bvh_channels(
+        motion::depth_first({"", format.skeleton(), format.rate, 0, {}}).skeleton);
+  }
 
   std::size_t size() const { return characters_.size(); }
   /// Frames per second.
@@ -66,11 +72,8 @@ class CharacterStream {
   /// the order of a BVH file, depth first, also if those of a model of classes are not.
   const motion::Skeleton& skeleton() const { return skeleton_; }
   /// The ids of all characters, in the order in which they were added.
-  std::vector<Id> ids() const {
-    std::vector<Id> out;
-    for (const auto& entry : characters_) out.push_back(entry.first);
-    return out;
-  }
+  const std::vector<Id>& ids() const { return ids_; }
+  bool contains(Id id) const { return characters_.contains(id); }
 
   /// Adds a character; it moves with the next step. Throws Error for a text without words, an unknown class,
   /// and a prior that is missing, too short or of another skeleton. Unknown words are accepted.
@@ -78,7 +81,9 @@ class CharacterStream {
 
   /// Adds them all, which costs little more than adding one. If one throws, none is added.
   std::vector<Id> add(std::span<const CharacterStart> starts) {
-    return actions() ? add_actions(starts) : add_texts(starts);
+    const std::vector<Id> added = actions() ? add_actions(starts) : add_texts(starts);
+    ids_.insert(ids_.end(), added.begin(), added.end());
+    return added;
   }
 
   /// Removes a character. Throws Error for an unknown id, as every function that takes an id.
@@ -86,6 +91,7 @@ class CharacterStream {
     character(id);
     std::visit([&](auto& stream) { stream.remove(id); }, stream_);
     characters_.erase(id);
+    std::erase(ids_, id);
   }
 
   /// Changes the text, from the frame after the next one; or the class, from the character's next second: up
@@ -271,6 +277,7 @@ class CharacterStream {
   std::variant<MotionStream, ActionStream> stream_;
   motion::Skeleton skeleton_;
   std::map<Id, Character> characters_;
+  std::vector<Id> ids_;
 };
 
 }  // namespace motiongan
