@@ -1,6 +1,6 @@
 /* Characters of a model, frame by frame, from C:
- *   stream MODEL PROMPT [PRIOR]     MODEL: a model file or a run's folder; PRIOR: a clip, for a model of classes
- * A hundred of them in rows of ten; half of them do something else after two seconds. */
+ *   stream MODEL PROMPT [PRIOR]     MODEL: a model file or a run's folder; PRIOR: a clip, for a model of
+ * classes A hundred of them in rows of ten; half of them do something else after two seconds. */
 #include <motiongan.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -38,7 +38,8 @@ int main(int argc, char** argv) {
   need(motiongan_model_unit(model, &metres));
   need(motiongan_model_prompt_count(model, &words));
   need(motiongan_model_prompt(model, words - 1, &other));
-  printf("%zu joints, %g frames per second, %zu words or classes; the last one is '%s'\n", joints, rate, words, other);
+  printf("%zu joints, %g frames per second, %zu words or classes; the last one is '%s'\n", joints, rate,
+         words, other);
 
   need(motiongan_stream_create(model, &stream));
   memset(starts, 0, sizeof starts);
@@ -67,8 +68,8 @@ int main(int argc, char** argv) {
     need(motiongan_stream_get(stream, NULL, characters, MOTIONGAN_GLOBAL_POSITIONS, positions,
                               characters * joints * 3));
     if (frame % (frames / 4) == 0)
-      printf("frame %2zu: the first root is at %.1f %.1f %.1f\n", frame, (double)positions[0], (double)positions[1],
-             (double)positions[2]);
+      printf("frame %2zu: the first root is at %.1f %.1f %.1f\n", frame, (double)positions[0],
+             (double)positions[1], (double)positions[2]);
   }
   free(rotations);
   free(positions);

@@ -3,6 +3,7 @@
 #include <motiongan.h>
 
 #include <array>
+#include <atomic>
 #include <motiongan/formats/read_motion.hpp>
 #include <motiongan/sample/action_generate.hpp>
 #include <motiongan/sample/character_stream.hpp>
@@ -199,6 +200,26 @@ TEST_CASE("streams are those of C++, bit for bit, in one thread and in several a
   CHECK(found[1] == wanted_with_prior);
   CHECK(found[2] == wanted);
   CHECK(found[3] == wanted_classes);
+}
+
+TEST_CASE("a stream may be closed while another thread steps it") {
+  const Handle rnn(open(files().rnn()));
+  for (int round = 0; round < 20; ++round) {
+    motiongan_stream stream = 0;
+    REQUIRE_OK(motiongan_stream_create(rnn, &stream));
+    const motiongan_start start = start_of("run", 0);
+    std::uint64_t id = 0;
+    REQUIRE_OK(motiongan_stream_add(stream, &start, 1, &id));
+    std::atomic<int> steps{0};
+    motiongan_status last = MOTIONGAN_OK;
+    std::thread stepping([&] {
+      while ((last = motiongan_stream_step(stream)) == MOTIONGAN_OK) ++steps;
+    });
+    while (steps < 2) std::this_thread::yield();
+    CHECK_OK(motiongan_close(stream));
+    stepping.join();
+    CHECK(last == MOTIONGAN_INVALID_HANDLE);
+  }
 }
 
 TEST_CASE("characters of a stream are read in any order, and only those asked for") {
