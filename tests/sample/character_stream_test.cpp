@@ -166,6 +166,24 @@ TEST_CASE("characters of a model of classes are those of ActionStream, each at a
   }
 }
 
+TEST_CASE("quaternions keep their sign while a character of a model of classes turns round") {
+  std::vector<motion::Quat> reference;
+  prior_of(clip(0), reference);
+  CharacterStream stream(actions());
+  const auto id = stream.add({.prompt = "walk", .prior = &clip(0)});
+  Motion before;
+  bool turned = false;  // a second that begins in the other half, where motion_from_positions() never begins
+  for (std::size_t frame = 0; frame < 4000 && !turned; ++frame) {
+    stream.step();
+    const Motion made = stream.motion(id);
+    for (std::size_t j = 0; frame > 0 && j < made.skeleton.size(); ++j)
+      CHECK(dot(before.rotation(0, j), made.rotation(0, j)) >= 0);
+    turned = frame % second == 0 && dot(made.rotation(0, 0), reference[0]) < -0.1;
+    before = made;
+  }
+  CHECK(turned);
+}
+
 TEST_CASE("characters with a prior start where they are told") {
   const motion::RootTrack at{300, -70, 0.5};
   std::vector<motion::Quat> reference;
