@@ -32,6 +32,31 @@ elseif(sources)
     part_left_out("FBX files of the command are" libassimp-dev)
   endif()
 
+  # The page of `motiongan serve`. It is not with the pages of view/, which are part of the library.
+  embed_texts("${PROJECT_BINARY_DIR}/command/command/serve_page.hpp" motiongan::command::pages
+    "${PROJECT_SOURCE_DIR}/view/serve/serve.html")
+  target_include_directories(motiongan-verbs PRIVATE "${PROJECT_BINARY_DIR}/command")
+
+  # Its web server, cpp-httplib. Debian's is compiled, with the options that its header must then have as well;
+  # elsewhere it is a header alone. Only http.cpp includes it.
+  find_path(HTTPLIB_INCLUDE_DIR httplib.h)
+  find_library(HTTPLIB_LIBRARY cpp-httplib)
+  mark_as_advanced(HTTPLIB_INCLUDE_DIR HTTPLIB_LIBRARY)
+  if(HTTPLIB_INCLUDE_DIR)
+    set(httplib_options MOTIONGAN_HTTPLIB)
+    if(HTTPLIB_LIBRARY)
+      list(APPEND httplib_options CPPHTTPLIB_OPENSSL_SUPPORT CPPHTTPLIB_ZLIB_SUPPORT CPPHTTPLIB_BROTLI_SUPPORT)
+      target_link_libraries(motiongan-verbs PUBLIC "${HTTPLIB_LIBRARY}")
+    endif()
+    find_package(Threads REQUIRED)
+    target_link_libraries(motiongan-verbs PUBLIC Threads::Threads)
+    target_include_directories(motiongan-verbs SYSTEM PRIVATE "${HTTPLIB_INCLUDE_DIR}")
+    set_source_files_properties("${PROJECT_SOURCE_DIR}/src/serve/http.cpp" PROPERTIES
+      COMPILE_DEFINITIONS "${httplib_options}" SKIP_UNITY_BUILD_INCLUSION ON)
+  else()
+    part_left_out("the server of `motiongan serve` is" libcpp-httplib-dev)
+  endif()
+
   own_program(motiongan-command "${PROJECT_SOURCE_DIR}/src/main.cpp")
   set_target_properties(motiongan-command PROPERTIES OUTPUT_NAME motiongan)
   target_link_libraries(motiongan-command PRIVATE motiongan-verbs)
