@@ -33,8 +33,8 @@ elseif(sources)
   endif()
 
   # The page of `motiongan serve`. It is not with the pages of view/, which are part of the library.
-  embed_texts("${PROJECT_BINARY_DIR}/command/command/serve_page.hpp" motiongan::command::pages
-    "${PROJECT_SOURCE_DIR}/view/serve/serve.html")
+  file(GLOB page CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/view/serve/*")
+  embed_texts("${PROJECT_BINARY_DIR}/command/command/serve_page.hpp" motiongan::command::pages ${page})
   target_include_directories(motiongan-verbs PRIVATE "${PROJECT_BINARY_DIR}/command")
 
   # Its web server, cpp-httplib. Debian's is compiled, with the options that its header must then have as well;

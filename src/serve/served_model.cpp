@@ -5,6 +5,7 @@
 #include "generate/action_priors.hpp"
 #include "motiongan/data/nearest_descriptions.hpp"
 #include "motiongan/motion/position_rotations.hpp"
+#include "motiongan/view/figure.hpp"
 #include "shared/prompt.hpp"
 
 namespace motiongan::command {
@@ -17,6 +18,13 @@ motion::Motion motion_of(const GivenPrior& given, const motion::PositionFormat& 
   const ActionPrior& prior = given.prior;
   return motion::motion_from_positions(
       {prior.id, prior.skeleton, format.rate, prior.places.size(), prior.positions}, given.reference);
+}
+
+/// Approximate height of a standing body of this skeleton, as figures are drawn.
+double height_of(const motion::Skeleton& skeleton) {
+  view::ViewedMotion rest{"", {skeleton, 1, 1, std::vector<motion::Quat>(skeleton.size()), {}}};
+  for (const motion::Joint& joint : skeleton.joints) rest.motion.positions.push_back(joint.offset);
+  return view::make_figure(rest).height;
 }
 
 }  // namespace
@@ -88,9 +96,10 @@ std::unique_ptr<Crowd> ServedModel::new_crowd() const {
 
 nlohmann::json ServedModel::describe() const {
   const auto about = [&](const auto& format, const char* made, const std::vector<std::string>& prompts) {
-    return nlohmann::json{{"name", name_},        {"classes", has_classes()}, {"made", made},
-                          {"rate", format.rate},  {"window", format.frames},  {"prompts", prompts},
-                          {"unit", unit_metres()}};
+    return nlohmann::json{{"name", name_},       {"classes", has_classes()},
+                          {"made", made},        {"height", height_of(format.skeleton())},
+                          {"rate", format.rate}, {"window", format.frames},
+                          {"prompts", prompts},  {"unit", unit_metres()}};
   };
   if (actions_) return about(actions_->format(), "seconds", actions_->format().classes);
   const motion::MotionFormat& format = texts_->format();

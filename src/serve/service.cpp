@@ -49,12 +49,16 @@ std::string bvh_text(const motion::Motion& motion, const std::string& name) {
 std::string serve_page() {
   const std::string_view player = view_files::player, mark = "// [figures]";
   const std::size_t begin = player.find(mark), end = player.find(mark, begin + 1);
+  require(end != player.npos, "view/player.html must contain \"", mark, "\" twice");
   std::string page = pages::serve;
-  const std::string place = "/*FIGURES*/";
-  const std::size_t at = page.find(place);
-  require(end != player.npos && at != page.npos,
-          "view/player.html must contain \"// [figures]\" twice, and view/serve/serve.html ", place);
-  return page.replace(at, place.size(), player.substr(begin, end - begin));
+  const auto put = [&](std::string_view marker, const std::string& text) {
+    const std::size_t at = page.find(marker);
+    require(at != page.npos, "view/serve/serve.html must contain ", marker);
+    page.replace(at, marker.size(), text);
+  };
+  put("/*FIGURES*/", std::string(player.substr(begin, end - begin)));
+  put("/*PAGE*/", concat(pages::people, "\n", pages::scene, "\n", pages::controls));
+  return page;
 }
 
 Service::Service(const ServedModel& model, Access access, ServiceLimits limits)
