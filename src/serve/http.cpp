@@ -94,6 +94,11 @@ void serve_http(const std::string& host, int port, const HttpHandler& handler,
   server.set_keep_alive_max_count(requests_per_connection);
   server.set_keep_alive_timeout(silent_seconds);
   server.set_tcp_nodelay(true);
+  // The library would share the port with another server of the same user, and each would get some requests.
+  server.set_socket_options([](socket_t socket) {
+    const int on = 1;
+    ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  });
   route_all(server, handler);
   const int bound = port == 0 ? server.bind_to_any_port(host) : server.bind_to_port(host, port) ? port : -1;
   require(bound > 0, "cannot listen at port ", port, " of ", host,
