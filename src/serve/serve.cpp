@@ -20,6 +20,7 @@ int serve(const ServeArgs& args, const CLI::App& verb) {
   require(!args.host.empty(), "--host is empty, expected an address of this machine, such as 127.0.0.1");
   const Context context;
   const ServedModel model(context, args.model, verb);
+  model.warm_up();
   // The port is known once the server listens; no request comes before.
   std::unique_ptr<Service> service;
   catch_signals();

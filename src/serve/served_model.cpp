@@ -89,6 +89,14 @@ void ServedModel::find_priors(const ServedModelArgs& args, const CLI::App& verb)
   }
 }
 
+void ServedModel::warm_up() const {
+  const std::vector<std::string>& prompts =
+      has_classes() ? actions_->format().classes : texts_->format().descriptions;
+  const std::unique_ptr<Crowd> crowd = new_crowd();
+  crowd->add({.prompt = prompts.empty() ? "walk" : prompts.front()});
+  crowd->step();
+}
+
 std::unique_ptr<Crowd> ServedModel::new_crowd() const {
   if (actions_) return stream_crowd(*actions_, priors_);
   return texts_->is_recurrent() ? stream_crowd(*texts_) : window_crowd(*texts_);

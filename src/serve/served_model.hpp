@@ -38,6 +38,9 @@ class ServedModel {
     return has_classes() ? actions_->format().space.unit_metres : texts_->format().space.unit_metres;
   }
 
+  /// Makes a frame, so that kernels are built before the first character waits for them.
+  void warm_up() const;
+
   /// No characters yet. The model must outlive them.
   std::unique_ptr<Crowd> new_crowd() const;
 

@@ -88,6 +88,7 @@ function freePlace() {
 async function add(prompt, place, more = {}) {
   const [x, z] = place || freePlace();
   const added = await (await ask("POST", "/characters", { prompt, x, z, ...more })).json();
+  if (!people.size) frames.length = 0;  // nothing moves: the first new frame is shown at once
   people.set(added.id, { id: added.id, prompt, hue: (205 + 137.5 * added.id) % 360, figure: null, spots: null,
                          last: [x, 0, z] });
   tell(prompt, added);

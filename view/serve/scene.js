@@ -32,18 +32,22 @@ async function readFigures() {
   }
 }
 
-const lead = 0.25;  // seconds that frames are made ahead, and with them a change of a text is late
+// How many frames are made ahead of those that are shown; what changes is late by them. One is needed to move
+// towards, the others bridge the time that answers take.
+let slowest = 0;  // seconds that an answer took, of the last ones
+const ahead = () => 1 + Math.ceil(state.model.rate * Math.min(0.5, 0.02 + 1.5 * slowest));
 
 async function fetchFrames() {
-  const last = frames.length ? frames[frames.length - 1].number : state.time, rate = state.model.rate;
-  const missing = Math.ceil(Math.max(1, lead * rate) - (last - state.time));
+  const last = frames.length ? frames[frames.length - 1].number : state.time;
+  const missing = Math.ceil(ahead() - (last - state.time));
   if (state.asking || !state.playing || people.size === 0 || missing < 1 && frames.length) return;
   state.asking = true;
-  const most = Math.max(2, Math.ceil(rate));
+  const most = Math.max(2, Math.ceil(state.model.rate)), asked = performance.now();
   try {
     // The first one alone: it is there sooner.
     const count = frames.length ? Math.min(missing, most) : 1;
     readFrames(await (await ask("GET", `/frames?from=${next}&count=${count}`)).arrayBuffer());
+    slowest = Math.max((performance.now() - asked) / 1000, 0.95 * slowest);
     const newest = frames.length ? frames[frames.length - 1].points : new Map();
     for (const [id, points] of newest) {
       const person = people.get(id);
