@@ -94,7 +94,7 @@ HttpAnswer Service::route(const HttpRequest& request) {
     if (request.method != "GET" && request.method != "HEAD") refuse_method(request, "GET");
     return {200, "text/html; charset=utf-8", page_};
   }
-  const std::lock_guard lock(mutex_);
+  Lock lock(mutex_);
   drop_idle(Clock::now());
   if (path == "/sessions") {
     if (request.method != "POST") refuse_method(request, "POST");
@@ -105,7 +105,7 @@ HttpAnswer Service::route(const HttpRequest& request) {
   if (!of_one && path != "/characters" && path != "/frames" && path != "/session")
     throw Refused(404, "there is nothing at " + path.substr(0, 100));
   Session& session = session_of(request);
-  if (of_one) return character(request, session, path.substr(below.size()));
+  if (of_one) return character(request, session, path.substr(below.size()), lock);
   if (path == "/characters") return characters(request, session);
   if (path == "/frames") return frames(request, session);
   if (request.method != "DELETE") refuse_method(request, "DELETE");
@@ -172,13 +172,14 @@ HttpAnswer Service::add(const HttpRequest& request, Session& session) {
   return json_answer(201, out);
 }
 
-HttpAnswer Service::character(const HttpRequest& request, Session& session, const std::string& name) {
+HttpAnswer Service::character(const HttpRequest& request, Session& session, const std::string& name,
+                              Lock& lock) {
   const std::size_t dot = name.find('.');
   const std::string kind = dot == name.npos ? "" : name.substr(dot + 1);
   const std::uint64_t number = whole_number(name.substr(0, dot), "the character's id", largest_seed);
   const auto id = static_cast<World::Id>(number);
   if (!session.world.has(id)) throw Refused(404, concat("there is no character ", id));
-  if (dot != name.npos) return download(request, session, id, kind);
+  if (dot != name.npos) return download(request, session, id, kind, lock);
   if (request.method == "DELETE") {
     session.world.remove(id);
     return {204, "", ""};
@@ -205,12 +206,13 @@ HttpAnswer Service::frames(const HttpRequest& request, Session& session) {
 }
 
 HttpAnswer Service::download(const HttpRequest& request, const Session& session, World::Id id,
-                             const std::string& kind) {
+                             const std::string& kind, Lock& lock) {
   if (request.method != "GET") refuse_method(request, "GET");
   if (kind != "bvh" && kind != "glb")
     throw Refused(404,
                   concat("there is no file of the kind \"", kind.substr(0, 20), "\", expected bvh or glb"));
   motion::Motion seen = as_asked([&] { return session.world.seen(id); });
+  lock.unlock();  // others need not wait until the file is made; the session may be gone from here on
   const std::string name = concat("character-", id);
   HttpAnswer out;
   if (kind == "bvh") {

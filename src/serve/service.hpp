@@ -29,6 +29,7 @@ class Service {
 
  private:
   using Clock = std::chrono::steady_clock;
+  using Lock = std::unique_lock<std::mutex>;
   struct Session {
     World world;
     Clock::time_point last;     // request
@@ -39,10 +40,10 @@ class Service {
   HttpAnswer open_session();
   HttpAnswer characters(const HttpRequest& request, Session& session);
   HttpAnswer add(const HttpRequest& request, Session& session);
-  HttpAnswer character(const HttpRequest& request, Session& session, const std::string& name);
+  HttpAnswer character(const HttpRequest& request, Session& session, const std::string& name, Lock& lock);
   HttpAnswer frames(const HttpRequest& request, Session& session);
   HttpAnswer download(const HttpRequest& request, const Session& session, World::Id id,
-                      const std::string& kind);
+                      const std::string& kind, Lock& lock);
   Session& session_of(const HttpRequest& request);
   void drop_idle(Clock::time_point now);
   nlohmann::json with_notes(World::Id id, const std::string& prompt) const;
