@@ -1,7 +1,8 @@
 // The server, and the characters that it moves: what the page knows of them, and their list.
 const token = new URLSearchParams(location.search).get("token");
 const state = { session: null, model: null, playing: true, time: 0, azimuth: 50, elevation: 24, zoom: 1,
-                centre: [0, 0], floor: 0, drawn: 0, selected: null, dirty: true, asking: false };
+                centre: [0, 0], floor: 0, drawn: 0, selected: null, dirty: true, asking: false,
+                hurry: false };  // hurry: someone waits for the next frame
 const people = new Map();  // id -> { id, prompt, hue, figure, spots, last }
 const frames = [];         // { number, points: Map(id -> Float32Array [nodes, 3]) }, those around state.time
 let next = 0;              // number of the frame to ask for
@@ -91,6 +92,7 @@ async function add(prompt, place, more = {}) {
   if (!people.size) frames.length = 0;  // nothing moves: the first new frame is shown at once
   people.set(added.id, { id: added.id, prompt, hue: (205 + 137.5 * added.id) % 360, figure: null, spots: null,
                          last: [x, 0, z] });
+  state.hurry = true;
   tell(prompt, added);
   showList();
   return added.id;

@@ -39,9 +39,10 @@ const ahead = () => 1 + Math.ceil(state.model.rate * Math.min(0.5, 0.02 + 1.5 * 
 
 async function fetchFrames() {
   const last = frames.length ? frames[frames.length - 1].number : state.time;
-  const missing = Math.ceil(ahead() - (last - state.time));
+  const missing = Math.max(state.hurry ? 1 : 0, Math.ceil(ahead() - (last - state.time)));
   if (state.asking || !state.playing || people.size === 0 || missing < 1 && frames.length) return;
   state.asking = true;
+  state.hurry = false;
   const most = Math.max(2, Math.ceil(state.model.rate)), asked = performance.now();
   try {
     // The first one alone: it is there sooner.
@@ -72,14 +73,15 @@ async function fetchFrames() {
   }
 }
 
-// The places of a character's nodes at the time, between two frames; null if it is not there.
+// The places of a character's nodes at the time, between two frames; null if it is not there. A new one stands
+// in its first frame until the others are there too.
 function pose(id) {
   let before = null, after = null;
   for (const frame of frames) {
     if (frame.number <= state.time && frame.points.has(id)) before = frame;
     if (frame.number > state.time && frame.points.has(id)) { after = frame; break; }
   }
-  if (!before) return null;
+  if (!before) return after && after.points.get(id);
   const a = before.points.get(id);
   if (!after || after.number !== before.number + 1) return a;
   const b = after.points.get(id), part = state.time - before.number;
