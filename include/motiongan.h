@@ -140,8 +140,9 @@ MOTIONGAN_API motiongan_status motiongan_clip_make(motiongan_model model, const 
                                                    uint64_t seed, uint32_t sample, motiongan_clip prior,
                                                    motiongan_clip* clip);
 
-/* Reads a motion file: BVH, AMC, NPZ of AMASS, CSV, NPY. The clip has y up; a T-pose at its start is left
- * out. As a prior it is scaled to the model's size where they differ by more than half. */
+/* Reads a motion file: BVH, GLB ("moves.glb#walk": one animation of several), AMC, NPZ of AMASS, CSV, NPY.
+ * The clip has y up; a T-pose at its start is left out. As a prior it is scaled to the model's size where
+ * they differ by more than half. */
 MOTIONGAN_API motiongan_status motiongan_clip_read(const char* path, motiongan_clip* clip);
 
 /* A clip of the model's joints from arrays, as motiongan_clip_get() writes them: rotations [frames, joints,
