@@ -155,7 +155,8 @@ TEST_CASE("animations of a file are clips") {
   CHECK(first.notes.front().find("arm.glb#reach names another") != std::string::npos);
   CHECK(says(message_of([&] { read_motion(file.string() + "#wave"); }),
              "no animation 'wave' in the file; it has 'bend_low', 'reach'"));
-  CHECK(says(message_of([&] { read_motion(file, {.fps = 1e9}); }), "at 1e+09 per second, expected at most 1.25e+07"));
+  CHECK(says(message_of([&] { read_motion(file, {.fps = 1e9}); }),
+             "at 1e+09 per second, expected at most 1.25e+07"));
   // A character without animations is no clip.
   Arm still;
   still.document["animations"] = Json::array();

@@ -131,9 +131,10 @@ inline std::vector<char> joints_of(const NodeScene& scene, const std::vector<std
   require(any, where, " has no skeleton: no joints, and no nodes that move");
 
   std::vector<std::size_t> count(nodes.size(), 0);  // of joints at or below each node
-  for (auto n = order.rbegin(); n != order.rend(); ++n) {
-    count[*n] += seed[*n] != 0;
-    if (nodes[*n].parent >= 0) count[static_cast<std::size_t>(nodes[*n].parent)] += count[*n];
+  for (std::size_t i = order.size(); i-- > 0;) {    // children first
+    const std::size_t n = order[i];
+    count[n] += seed[n] != 0;
+    if (nodes[n].parent >= 0) count[static_cast<std::size_t>(nodes[n].parent)] += count[n];
   }
   // Of several trees the one with the most joints, from the deepest node above all of them.
   std::size_t root = order.front();

@@ -202,7 +202,7 @@ class CharacterStream {
       texts()->format().require_skeleton(s.prior->skeleton, "the prior");
       options.back().prior = &(moved[i] = ending_at(*s.prior, texts()->format().layout.root(), *s.at));
     }
-    const std::vector<Id> ids = texts()->add(options);
+    std::vector<Id> ids = texts()->add(options);
     for (const Id id : ids) characters_.emplace(id, Character{});
     return ids;
   }
@@ -224,7 +224,7 @@ class CharacterStream {
       }
       options.push_back({&given.at(s.prior).prior, label, s.seed, s.sample});
     }
-    const std::vector<Id> ids = actions()->add(options);
+    std::vector<Id> ids = actions()->add(options);
     for (std::size_t i = 0; i < ids.size(); ++i) {
       characters_.emplace(ids[i], given.at(starts[i].prior).character);
       if (!starts[i].at) continue;
