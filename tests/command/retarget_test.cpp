@@ -51,10 +51,13 @@ TEST_CASE("clips are put on another skeleton; the map can be written, edited and
   refused("clips --to none.bvh --out x", "none.bvh does not exist");
   refused("clips --to unreal.bvh --out clips", "is an input");
   refused("clips --to unreal.bvh --out x --map none.tsv", "none.tsv");
-  Skeleton nameless = unreal();
-  for (std::size_t j = 0; j < nameless.size(); ++j) nameless.joints[j].name = "Bone" + std::to_string(j);
-  write_bvh("nameless.bvh", at_rest(nameless));
-  refused("clips --to nameless.bvh --out x", "give a map of the joints");
+  write_bvh("nameless.bvh", at_rest(without_names(unreal())));
+  CHECK(call("retarget clips --to nameless.bvh --out nameless")
+            .has("left upper arm   LeftArm                Bone"));
+  Skeleton lying = without_names(unreal());
+  for (Joint& joint : lying.joints) joint.offset = {length(joint.offset), 0, 0};
+  write_bvh("lying.bvh", at_rest(lying));
+  refused("clips --to lying.bvh --out x", "give a map of the joints");
   CHECK(!fs::exists("x"));
 }
 

@@ -76,8 +76,22 @@ TEST_CASE("bodies are found in the names of many tools") {
     CHECK(name(joint_of(body, BodyPart::right_shin)) == n.right_shin);
     CHECK(body.size() == 20);
   }
-  Skeleton nameless = walk().skeleton;
-  for (std::size_t j = 0; j < nameless.size(); ++j) nameless.joints[j].name = "Bone" + std::to_string(j);
+}
+
+TEST_CASE("bodies without telling names are found by their rest pose") {
+  for (const Skeleton& known :
+       {walk().skeleton, mixamo(), unreal(), vrm(), rigify(), smpl(), biped(), in_a_pose()}) {
+    CHECK(find_body(without_names(known)) == find_body(known));
+    Skeleton turned = without_names(known);  // a body that faces -X
+    const auto turn = [](const Vec3& v) { return Vec3{-v[2], v[1], v[0]}; };
+    for (Joint& joint : turned.joints) {
+      joint.offset = turn(joint.offset);
+      if (joint.end_site) joint.end_site = turn(*joint.end_site);
+    }
+    CHECK(find_body(turned) == find_body(known));
+  }
+  // Nothing tells how a skeleton lies whose bones all lie along X.
+  const Skeleton nameless = without_names(along_x(walk()).skeleton);
   const std::string message = message_of([&] { find_body(nameless); });
   CHECK(says(message, "left upper arm"));
   CHECK(says(message, "Bone3"));

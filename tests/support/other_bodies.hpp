@@ -16,6 +16,7 @@ inline motion::Skeleton renamed(const std::map<std::string, std::string>& names,
   for (motion::Joint& joint : skeleton.joints) {
     const bool leg = joint.name.ends_with("Leg") || joint.name.ends_with("Foot");
     joint.offset = motion::scale(joint.offset, leg ? size * legs : size);
+    if (joint.end_site) joint.end_site = motion::scale(*joint.end_site, size);
     const auto at = names.find(joint.name);
     joint.name = at == names.end() ? prefix + joint.name : at->second;
   }
@@ -40,6 +41,12 @@ inline std::map<std::string, std::string> both_sides(const std::map<std::string,
     }
   }
   return out;
+}
+
+/// The skeleton with names that say nothing.
+inline motion::Skeleton without_names(motion::Skeleton skeleton) {
+  for (std::size_t j = 0; j < skeleton.size(); ++j) skeleton.joints[j].name = "Bone" + std::to_string(j);
+  return skeleton;
 }
 
 /// One frame of the skeleton without rotations.
@@ -166,7 +173,10 @@ inline motion::Skeleton in_a_pose() {
     return skeleton.joints[static_cast<std::size_t>(skeleton.find(std::string("mixamorig:") + name))];
   };
   const motion::Quat facing = motion::quat_from_expmap({0, motion::pi / 2, 0});
-  for (motion::Joint& j : skeleton.joints) j.offset = rotate(facing, j.offset);
+  for (motion::Joint& j : skeleton.joints) {
+    j.offset = rotate(facing, j.offset);
+    if (j.end_site) j.end_site = rotate(facing, *j.end_site);
+  }
   for (const auto& [side, sign] : {std::pair{"Left", -1.0}, std::pair{"Right", 1.0}})
     for (const char* part : {"ForeArm", "Hand"}) {
       motion::Vec3& offset = joint((std::string(side) + part).c_str()).offset;

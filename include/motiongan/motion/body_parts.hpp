@@ -16,6 +16,7 @@
 #include "motiongan/core/fields.hpp"
 #include "motiongan/motion/body_side.hpp"
 #include "motiongan/motion/feet.hpp"
+#include "motiongan/motion/limbs_by_shape.hpp"
 
 namespace motiongan::motion {
 
@@ -78,10 +79,6 @@ inline std::size_t joint_of(const BodyParts& body, BodyPart part) {
 }
 
 namespace body_parts_detail {
-
-/// The limb parts of a side, in the order of BodyPart from left_collar or right_collar on.
-enum class Limb : std::uint8_t { collar, arm, forearm, hand, thigh, shin, foot, toe };
-inline constexpr std::size_t limb_count = 8;
 
 inline BodyPart part_of(Side side, Limb limb) {
   const auto first = side == Side::left ? BodyPart::left_collar : BodyPart::right_collar;
@@ -165,8 +162,6 @@ inline std::vector<std::size_t> between(const Skeleton& skeleton, std::size_t ab
   return out;
 }
 
-using LimbJoints = std::array<std::optional<std::size_t>, limb_count>;
-
 /// The joints of one side by name: of each part the first one that hangs on those before it in the limb.
 inline LimbJoints limbs_by_name(const Skeleton& skeleton, Side side) {
   LimbJoints out;
@@ -225,19 +220,17 @@ inline std::vector<std::size_t> spine_by_name(const Skeleton& skeleton) {
 
 }  // namespace body_parts_detail
 
-/// Finds the parts of a body. Limbs are found by the joints' names, in the conventions of limb_of(); hips,
-/// spine and neck are what joins them: the hips are where the legs and the trunk meet, the spine is what
-/// leads from there to where the arms meet, the neck what leads on to the head. Throws Error, naming the
-/// parts that are missing and the joints, unless both legs down to the feet and both arms down to the
-/// forearms are found.
+/// Finds the parts of a body. Limbs are found by the joints' names, in the conventions of limb_of(), or else
+/// by limbs_by_shape(); hips, spine and neck are what joins them: the hips are where the legs and the trunk
+/// meet, the spine is what leads from there to where the arms meet, the neck what leads on to the head.
+/// Throws Error, naming the parts that are missing and the joints, unless both legs down to the feet and both
+/// arms down to the forearms are found.
 inline BodyParts find_body(const Skeleton& skeleton) {
   namespace detail = body_parts_detail;
-  using detail::Limb;
   BodyParts out;
   std::string missing;
-  for (const Side side : {Side::left, Side::right}) {
-    const detail::LimbJoints limbs = detail::limbs_by_name(skeleton, side);
-    for (std::size_t l = 0; l < detail::limb_count; ++l) {
+  const auto use = [&](const LimbJoints& limbs, Side side) {
+    for (std::size_t l = 0; l < limb_count; ++l) {
       const auto limb = static_cast<Limb>(l);
       const BodyPart part = detail::part_of(side, limb);
       if (limbs[l]) {
@@ -246,11 +239,18 @@ inline BodyParts find_body(const Skeleton& skeleton) {
         missing += concat(missing.empty() ? "" : ", ", name_of(part));
       }
     }
-  }
-  require(missing.empty(), "no joint names say which are: ", missing,
-          "; give a map of the joints. The joints are: ", feet_detail::joint_names(skeleton));
-  const auto joint = [&](BodyPart part) { return out.at(part).front(); };
+  };
+  for (const Side side : {Side::left, Side::right}) use(detail::limbs_by_name(skeleton, side), side);
   std::optional<std::size_t> head = detail::find_head(skeleton);
+  if (!missing.empty()) {
+    const std::optional<ShapedLimbs> shaped = limbs_by_shape(skeleton);
+    require(shaped.has_value(), "neither joint names nor the rest pose say which are: ", missing,
+            "; give a map of the joints. The joints are: ", feet_detail::joint_names(skeleton));
+    out.clear();
+    use(shaped->left, Side::left), use(shaped->right, Side::right);
+    if (!head) head = shaped->head;
+  }
+  const auto joint = [&](BodyPart part) { return out.at(part).front(); };
   const std::size_t chest = detail::common(skeleton, joint(BodyPart::left_arm), joint(BodyPart::right_arm));
   if (!head) {  // rigify's is the last of the spine
     const std::vector<std::size_t> spine = detail::spine_by_name(skeleton);
