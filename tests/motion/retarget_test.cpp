@@ -33,8 +33,9 @@ double limbs_apart(const Motion& a, const BodyParts& in_a, const Motion& b, cons
   double most = 0;
   for (std::size_t f = 0; f < a.frames; ++f)
     for (const auto& [part, next] : limbs) {
-      const auto bone = [&](const std::vector<Vec3>& at, std::size_t joints, const BodyParts& body) {
-        const Vec3 v = subtract(at[f * joints + joint_of(body, next)], at[f * joints + joint_of(body, part)]);
+      const auto bone = [f, from = part, to = next](const std::vector<Vec3>& at, std::size_t joints,
+                                                    const BodyParts& body) {
+        const Vec3 v = subtract(at[f * joints + joint_of(body, to)], at[f * joints + joint_of(body, from)]);
         return scale(v, 1 / length(v));
       };
       const Vec3 d = subtract(bone(p, a.skeleton.size(), in_a), bone(q, b.skeleton.size(), in_b));

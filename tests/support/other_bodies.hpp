@@ -28,7 +28,8 @@ inline std::map<std::string, std::string> both_sides(const std::map<std::string,
                                                      const std::string& is_left,
                                                      const std::string& is_right) {
   std::map<std::string, std::string> out;
-  for (const auto& [name, other] : left) {
+  for (const auto& entry : left) {
+    const std::string &name = entry.first, &other = entry.second;
     const auto with = [&](const std::string& side) {
       const auto at = other.find('#');
       return at == std::string::npos ? other : other.substr(0, at) + side + other.substr(at + 1);
