@@ -52,10 +52,7 @@ namespace {
 
 /// The model in a file, or in the folder of a run.
 std::shared_ptr<Model> load(const std::filesystem::path& given, const char* device) {
-  const bool folder = std::filesystem::is_directory(given);
-  const std::filesystem::path path = folder ? RunFiles{given}.generator() : given;
-  require(!folder || std::filesystem::exists(path), given.string(), " holds no ", path.filename().string(),
-          "; give a model file, or the folder of a training run");
+  const std::filesystem::path path = model_file(given);
   const io::SafeTensors file = io::SafeTensors::read(path);
   const std::string where = path.string();
   const bool texts = holds_model<Dvgan>(file);

@@ -33,13 +33,6 @@ auto as_asked(const Change& change) {
   }
 }
 
-/// The BVH file that write_bvh() writes.
-std::string bvh_text(const motion::Motion& motion, const std::string& name) {
-  motion::Clip clip = motion::to_clip(motion, name);
-  motion::bvh_detail::round_channels(clip.channels);
-  return motion::format_bvh(clip);
-}
-
 [[noreturn]] void refuse_method(const HttpRequest& request, const char* expected) {
   throw Refused(405, concat(request.method, " ", request.path, " is not possible, expected ", expected));
 }
@@ -216,7 +209,7 @@ HttpAnswer Service::download(const HttpRequest& request, const Session& session,
   const std::string name = concat("character-", id);
   HttpAnswer out;
   if (kind == "bvh") {
-    out = {200, "text/plain; charset=utf-8", bvh_text(seen, name)};
+    out = {200, "text/plain; charset=utf-8", motion::format_bvh(seen, name)};
   } else {
     const motion::NamedMotion named{name, std::move(seen)};
     out = {200, "model/gltf-binary", motion::glb_file({&named, 1}, {.unit_metres = model_.unit_metres()})};

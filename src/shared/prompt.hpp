@@ -12,15 +12,6 @@
 
 namespace motiongan::command {
 
-/// The model file `given`, or the one in the run folder `given`.
-inline fs::path model_file(const fs::path& given) {
-  if (!fs::is_directory(given)) return given;
-  const RunFiles files{given};
-  require(fs::exists(files.generator()), given.string(), " holds no ", files.generator().filename().string(),
-          "; give a model file, or the --save folder of a training run");
-  return files.generator();
-}
-
 /// Throws Error if the text of --text has no words or is not UTF-8.
 inline void check_text(const std::string& text) {
   require(!motion::split_words(text).empty(), "--text \"", text, "\" has no words; describe a motion");

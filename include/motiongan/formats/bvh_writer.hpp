@@ -147,11 +147,17 @@ inline void write_bvh(const std::filesystem::path& path, const Clip& clip) {
   write_text_atomically(path, format_bvh(clip));
 }
 
-/// Writes a motion in its skeleton's own channels, rounded to six decimals (degrees and length units).
-inline void write_bvh(const std::filesystem::path& path, const Motion& motion) {
-  Clip clip = to_clip(motion, path.stem().string());
+/// The BVH text of a motion in its skeleton's own channels, rounded to six decimals (degrees and length
+/// units). `id` names it in errors.
+inline std::string format_bvh(const Motion& motion, std::string id) {
+  Clip clip = to_clip(motion, std::move(id));
   bvh_detail::round_channels(clip.channels);
-  write_bvh(path, clip);
+  return format_bvh(clip);
+}
+
+/// Writes format_bvh(motion), as above.
+inline void write_bvh(const std::filesystem::path& path, const Motion& motion) {
+  write_text_atomically(path, format_bvh(motion, path.stem().string()));
 }
 
 }  // namespace motiongan::motion

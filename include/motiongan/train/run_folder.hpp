@@ -30,6 +30,16 @@ struct RunFiles {
   std::filesystem::path network(const std::string& name) const { return folder / (name + ".safetensors"); }
 };
 
+/// The model file `given`, or the one in the folder `given` of a run. Throws Error if the folder has none.
+inline std::filesystem::path model_file(const std::filesystem::path& given) {
+  if (!std::filesystem::is_directory(given)) return given;
+  const RunFiles files{given};
+  require(std::filesystem::exists(files.generator()), given.string(), " holds no ",
+          files.generator().filename().string(),
+          "; give a model file, or the --save folder of a training run");
+  return files.generator();
+}
+
 /// Receives a warning: one sentence or more, without a line break at the end.
 using Warn = std::function<void(const std::string& text)>;
 
