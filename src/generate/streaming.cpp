@@ -26,7 +26,7 @@ class Growing {
   CharacterId id() const { return id_; }
 
   void append(const motion::Motion& piece) {
-    const motion::Motion made = job_.body != nullptr ? job_.body->put_piece(piece) : piece;
+    const motion::Motion made = job_.body != nullptr ? job_.body->put_piece(piece, rise_) : piece;
     write(cleaner_ ? cleaner_->push(made) : made);
   }
 
@@ -57,6 +57,7 @@ class Growing {
   double rate_;
   std::size_t frames_;
   std::optional<GrowingFile> file_;
+  std::optional<double> rise_;  // see TargetBody::put_piece()
   std::optional<motion::CleanStream> cleaner_;
   motion::Motion kept_;
 };

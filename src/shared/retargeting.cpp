@@ -41,11 +41,12 @@ TargetBody::TargetBody(const Retargeting& options, std::FILE* report) : options_
 }
 
 motion::Motion TargetBody::put(const motion::Motion& motion) {
-  return finished(options_.on() ? retargeter_of(motion).standing(motion) : motion);
+  std::optional<double> rise;
+  return put_piece(motion, rise);
 }
 
-motion::Motion TargetBody::put_piece(const motion::Motion& piece) {
-  return finished(options_.on() ? retargeter_of(piece)(piece) : piece);
+motion::Motion TargetBody::put_piece(const motion::Motion& piece, std::optional<double>& rise) {
+  return finished(options_.on() ? retargeter_of(piece).standing(piece, rise) : piece);
 }
 
 motion::Motion TargetBody::finished(motion::Motion motion) const {

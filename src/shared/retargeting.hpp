@@ -39,8 +39,9 @@ class TargetBody {
   /// how the joints are matched.
   motion::Motion put(const motion::Motion& motion);
 
-  /// The same for a piece of a motion, which is not moved up or down for its feet to stand on the floor.
-  motion::Motion put_piece(const motion::Motion& piece);
+  /// The same for a motion that comes in pieces. The first one sets how far all of them are moved up or down
+  /// for the feet to stand on the floor.
+  motion::Motion put_piece(const motion::Motion& piece, std::optional<double>& rise);
 
  private:
   motion::Motion finished(motion::Motion motion) const;

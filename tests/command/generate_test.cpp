@@ -228,6 +228,13 @@ TEST_CASE("an RNN model makes any number of frames") {
     const Motion made = to_motion(read_bvh("v/walk_000.bvh"));
     CHECK(made.skeleton.find("leftUpperArm") >= 0);
     CHECK(made.frames == 60);
+    // Written in pieces, but as high above the floor as the whole motion put there afterwards.
+    REQUIRE(call("generate run --text walk --frames 60 --skeleton vrm.bvh --out v").status == 0);
+    REQUIRE(call("generate run --text walk --frames 60 --out whole").status == 0);
+    REQUIRE(call("retarget whole --to vrm.bvh --out again").status == 0);
+    const Motion streamed = to_motion(read_bvh("v/walk_000.bvh")),
+                 whole = to_motion(read_bvh("again/walk_000.bvh"));
+    CHECK(std::abs(motiongan::motion::floor_under(streamed) - motiongan::motion::floor_under(whole)) < 1e-5);
     CHECK(call("generate run --text walk --map m.tsv").has("need --skeleton"));
     CHECK(call("generate run --text walk --skeleton none.bvh").has("none.bvh does not exist"));
     CHECK(call("view v g --glb seen.glb").has("3 animations"));

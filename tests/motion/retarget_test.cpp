@@ -136,6 +136,23 @@ TEST_CASE("feet stand on the floor in proportion") {
   CHECK(std::abs(floor_under(there.standing(source)) - 0.012 * floor) < 1e-9);
 }
 
+TEST_CASE("pieces of a motion stand on the floor of the first one") {
+  const Motion source = walk();
+  const Retargeter there(source, at_rest(mixamo()));
+  const Motion first = slice(source, 0, 20);
+  std::optional<double> rise;
+  Motion pieces = there.standing(first, rise);
+  REQUIRE(rise.has_value());
+  CHECK(std::abs(floor_under(pieces) - 0.012 * floor_under(first)) < 1e-9);
+  // What the first piece has set holds for the others.
+  *rise += 0.25;
+  pieces = there.standing(slice(source, 20, source.frames - 20), rise);
+  const Motion raw = there(source);
+  const std::size_t hips = joint_of(there.map().to, BodyPart::hips);
+  for (std::size_t f = 0; f < pieces.frames; ++f)
+    CHECK(pieces.position(f, hips)[1] - raw.position(20 + f, hips)[1] == doctest::Approx(*rise));
+}
+
 TEST_CASE("a skeleton that is no body without rotations takes its reference from a motion") {
   const Motion source = walk(), strange = along_x(source);
   // The same motion in other local axes.

@@ -192,9 +192,16 @@ class Retargeter {
   /// The same for a whole motion, which is then moved up or down so that its feet stand as high as those of
   /// the source, in proportion: by the 5th percentile of their heights.
   Motion standing(const Motion& motion) const {
-    Motion out = (*this)(motion);
-    const double rise = scale_ * floor_of(motion, map_.from) - floor_of(out, map_.to);
-    for (std::size_t f = 0; f < out.frames; ++f) raise(out, f, carrier_, rise);
+    std::optional<double> rise;
+    return standing(motion, rise);
+  }
+
+  /// The same for a motion that comes in pieces: all are moved by `rise`, in the target's unit, which the
+  /// first one sets.
+  Motion standing(const Motion& piece, std::optional<double>& rise) const {
+    Motion out = (*this)(piece);
+    if (!rise) rise = scale_ * floor_of(piece, map_.from) - floor_of(out, map_.to);
+    for (std::size_t f = 0; f < out.frames; ++f) raise(out, f, carrier_, *rise);
     return out;
   }
 
