@@ -4,49 +4,26 @@
 #include <doctest/doctest.h>
 
 #include "../support/check_grads.hpp"
-#include "../support/walking_clips.hpp"
-#include "motiongan/data/dataset.hpp"
+#include "../support/walking_data.hpp"
 
 using namespace motiongan;
 using namespace motiongan::testing;
 using motion::RootRotation;
 using motion::Vec3;
 
-namespace {
-
-motion::Dataset data_of(RootRotation form, bool position = true) {
-  return motion::Dataset::from_motions(
-      {{"a", motion::curved_walk_on_legs(0.3, {1, 0, 2}, 60), {"walk"}},
-       {"b", motion::curved_walk_on_legs(-2, {5, 0.2, -3}, 50), {"walk"}},
-       {"c", motion::curved_walk_on_legs(1, {}, 45), {"walk"}}},
-      {.frames = 8, .rate = 5, .root_position = position, .root_rotation = form, .train_share = 1});
-}
-
-const RootRotation forms[] = {RootRotation::expmap, RootRotation::heading, RootRotation::velocity,
-                              RootRotation::support};
-
-}  // namespace
-
 TEST_CASE("places and velocities are those of the motion") {
-  for (const RootRotation form : forms) {
+  for (const RootRotation form : root_forms) {
     CAPTURE(static_cast<int>(form));
-    const motion::Dataset data = data_of(form);
+    const motion::Dataset data = walking_data(form);
     const motion::MotionFormat& format = data.format;
-    const std::size_t dof = format.dof(), joints = format.skeleton().size();
+    const std::size_t joints = format.skeleton().size();
     const double leg = motion::leg_length(format.skeleton());
-    std::vector<float> batch(8 * 2 * dof), window(8 * dof);
     std::vector<motion::Motion> motions;
-    for (std::size_t b = 0; b < 2; ++b) {
-      data.window(data.train[b], 11, window);
-      motions.push_back(format.to_motion(window));
-      for (std::size_t f = 0; f < 8; ++f)
-        std::copy_n(window.begin() + static_cast<std::ptrdiff_t>(f * dof), dof,
-                    batch.begin() + static_cast<std::ptrdiff_t>((f * 2 + b) * dof));
-    }
+    for (std::size_t b = 0; b < 2; ++b) motions.push_back(format.to_motion(window_of(data, b)));
     const BodyView view(double_context(), format);
     REQUIRE(view.size() == 6 * joints - 2);  // but for x and z of the root
     const std::vector<double> seen =
-        view(Var::constant(Tensor::from(double_context(), {8, 2, dof}, batch))).value().to_host<double>();
+        view(Var::constant(windows_of(data, double_context(), 2))).value().to_host<double>();
     for (std::size_t b = 0; b < 2; ++b) {
       const std::vector<Vec3> world = motion::joint_positions(motions[b]);
       const auto heading = [&](std::size_t f) {
@@ -78,11 +55,11 @@ TEST_CASE("places and velocities are those of the motion") {
 }
 
 TEST_CASE("first and second derivatives, with and without the root's position") {
-  for (const RootRotation form : forms)
+  for (const RootRotation form : root_forms)
     for (const bool position : {true, false}) {
       CAPTURE(static_cast<int>(form));
       CAPTURE(position);
-      const motion::Dataset data = data_of(form, position);
+      const motion::Dataset data = walking_data(form, position);
       const BodyView view(double_context(), data.format);
       const std::size_t dof = data.format.dof();
       CHECK(check_grads(
@@ -91,7 +68,7 @@ TEST_CASE("first and second derivatives, with and without the root's position") 
 }
 
 TEST_CASE("what cannot be seen is an error") {
-  const motion::Dataset data = data_of(RootRotation::heading);
+  const motion::Dataset data = walking_data(RootRotation::heading);
   const BodyView view(double_context(), data.format);
   CHECK_THROWS_WITH_AS(view(Var::constant(Tensor(double_context(), {1, 2, data.format.dof()}))),
                        doctest::Contains("expected [2 or more frames, batch, "), Error);

@@ -88,13 +88,17 @@ inline double floor_under(const Motion& motion, std::span<const std::string> foo
   return percentile(std::move(heights), 0.05);
 }
 
-/// Moves `joint` of frame f, and what hangs on it, up by `rise`.
-inline void raise(Motion& motion, std::size_t f, std::size_t joint, double rise) {
+/// Moves `joint` of frame f, and what hangs on it, by a vector of the world.
+inline void shift(Motion& motion, std::size_t f, std::size_t joint, Vec3 by) {
   const int parent = motion.skeleton.joints[joint].parent;
-  Vec3 up{0, rise, 0};
   if (parent >= 0)
-    up = rotate(inverse(world_joint(motion, f, static_cast<std::size_t>(parent)).rotation), up);
-  motion.position(f, joint) = add(motion.position(f, joint), up);
+    by = rotate(inverse(world_joint(motion, f, static_cast<std::size_t>(parent)).rotation), by);
+  motion.position(f, joint) = add(motion.position(f, joint), by);
+}
+
+/// The same, up by `rise`.
+inline void raise(Motion& motion, std::size_t f, std::size_t joint, double rise) {
+  shift(motion, f, joint, {0, rise, 0});
 }
 
 namespace clean_detail {
