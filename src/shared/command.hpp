@@ -22,7 +22,7 @@ namespace motiongan::command {
 namespace fs = std::filesystem;
 
 /// Exit statuses besides 0 and, after a signal, 128 + its number. CLI11's are 100 and above.
-inline constexpr int exit_failure = 1, exit_diverged = 3;
+inline constexpr int exit_failure = 1, exit_diverged = 3, exit_not_met = 4;
 
 /// What main() runs after parsing the command line. Returns the exit status.
 using Job = std::function<int()>;

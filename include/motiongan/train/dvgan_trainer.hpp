@@ -70,6 +70,15 @@ struct DvganLosses {
   }
 };
 
+/// The sizes of a model's critic, which is given `seen` values of a frame.
+inline CnnCriticOptions critic_sizes(const Dvgan& model, std::size_t seen) {
+  return {.vocabulary = model.format().vocabulary.size(),
+          .dof = seen,
+          .frames = model.format().frames,
+          .hidden = model.options().hidden,
+          .taps = model.options().taps};
+}
+
 /// Trains a Dvgan on a data set. Critic and generator steps can also be called one by one.
 class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> {
  public:
@@ -78,12 +87,7 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
       : ModelTrainer(model, options),
         windows_(model.context(), data),
         sees_(model.context(), model.format(), options.critic.sees),
-        critic_(Initializer(model.context(), model.options().seed + 1),
-                {.vocabulary = model.format().vocabulary.size(),
-                 .dof = sees_.size(),
-                 .frames = model.format().frames,
-                 .hidden = model.options().hidden,
-                 .taps = model.options().taps},
+        critic_(Initializer(model.context(), model.options().seed + 1), critic_sizes(model, sees_.size()),
                 options.critic),
         generator_adam_(named_parameters(model), options.adam),
         critic_adam_(named_parameters(critic_), options.adam) {

@@ -16,11 +16,23 @@
 
 namespace motiongan::view {
 
+/// What a motion was asked for, in its world: drawn beside it.
+struct Marks {
+  struct Target {
+    motion::Vec3 place{};
+    double from = 0, to = 0;  ///< seconds
+  };
+  std::vector<motion::Vec3> path = {};      ///< over the ground; heights do not count
+  std::vector<Target> targets = {};         ///< points that a joint should be at
+  std::vector<motion::Motion> ghosts = {};  ///< poses, one frame each, of the motion's skeleton
+};
+
 /// A motion and its caption.
 struct ViewedMotion {
   std::string title;  ///< UTF-8
   motion::Motion motion;
   std::size_t seed_frames = 0;  ///< number of given frames at the start, drawn in grey
+  Marks marks = {};
 };
 
 using motion::Side;

@@ -14,6 +14,7 @@
 #include "motiongan/core/error.hpp"
 #include "motiongan/formats/text_file.hpp"
 #include "motiongan/generated/view.hpp"
+#include "motiongan/motion/motion.hpp"
 #include "motiongan/view/figure.hpp"
 
 namespace motiongan::view {
@@ -73,6 +74,43 @@ std::string json_integers(const Range& values) {
   return out + "]";
 }
 
+/// Numbers as a JSON list.
+inline std::string json_numbers(std::span<const double> values) {
+  std::string out = "[";
+  for (const double value : values) out += (out.size() > 1 ? "," : "") + json_number(value);
+  return out + "]";
+}
+
+/// What was asked for, as JSON: the path's x and z, targets as x, y, z and their times, and the points of
+/// each ghost, which has the nodes of `figure`. Empty if there is nothing.
+inline std::string json_marks(const ViewedMotion& viewed, const Figure& figure) {
+  const Marks& marks = viewed.marks;
+  std::vector<double> path, targets;
+  for (const motion::Vec3& p : marks.path) path.insert(path.end(), {p[0], p[2]});
+  for (const Marks::Target& t : marks.targets)
+    targets.insert(targets.end(), {t.place[0], t.place[1], t.place[2], t.from, t.to});
+  // Ghosts as further frames of the motion, so that they have its nodes.
+  motion::Motion with_ghosts = marks.ghosts.empty() ? motion::Motion() : viewed.motion;
+  for (motion::Motion ghost : marks.ghosts) {
+    ghost.rate = with_ghosts.rate;
+    with_ghosts = join(std::move(with_ghosts), ghost);
+  }
+  std::string ghosts;
+  const Figure all = marks.ghosts.empty() ? Figure() : make_figure({viewed.title, with_ghosts, 0, {}});
+  for (std::size_t g = 0; g < marks.ghosts.size(); ++g) {
+    if (all.nodes() != figure.nodes()) break;  // bones of other lengths, where the motion has none
+    std::vector<double> points;
+    for (std::size_t n = 0; n < all.nodes(); ++n) {
+      const motion::Vec3& p = all.point(figure.frames + g, n);
+      points.insert(points.end(), p.begin(), p.end());
+    }
+    ghosts += (ghosts.empty() ? "" : ",") + json_numbers(points);
+  }
+  if (path.empty() && targets.empty() && ghosts.empty()) return {};
+  return ",\"path\":" + json_numbers(path) + ",\"targets\":" + json_numbers(targets) + ",\"ghosts\":[" +
+         ghosts + "]";
+}
+
 /// One clip of the page as JSON; positions are little-endian int16 [frames, nodes, 3] in base64.
 inline std::string json_clip(const ViewedMotion& viewed, double max_rate) {
   const Figure figure = make_figure(viewed);
@@ -117,8 +155,8 @@ inline std::string json_clip(const ViewedMotion& viewed, double max_rate) {
          ",\"heads\":" + json_integers(figure.heads) + ",\"height\":" + json_number(figure.height) +
          ",\"floor\":" + json_number(figure.floor) + ",\"heading\":" + json_number(figure.heading) +
          ",\"origin\":[" + json_number(origin[0]) + "," + json_number(origin[1]) + "," +
-         json_number(origin[2]) + "],\"scale\":" + json_number(scale) + ",\"data\":\"" + base64(bytes) +
-         "\"}";
+         json_number(origin[2]) + "],\"scale\":" + json_number(scale) + json_marks(viewed, figure) +
+         ",\"data\":\"" + base64(bytes) + "\"}";
 }
 
 }  // namespace detail

@@ -1,0 +1,81 @@
+// The noise of a motion as a variable: what is changed to direct it.
+#pragma once
+#include <vector>
+
+#include "motiongan/models/dvgan.hpp"
+
+namespace motiongan {
+
+/// The noise of a batch of motions in one variable, [vectors, k]: for a CNN generator every vector of every
+/// level, for an RNN generator every frame's. A vector keeps the length that it was drawn with, so that the
+/// generator goes on seeing what it was trained on: in many dimensions normal vectors differ in direction,
+/// and hardly in length.
+class NoiseVariable {
+ public:
+  /// Draws it as Dvgan::generate does, for samples key.first_sample and following. With `given` frames
+  /// [n, B, dof], an RNN generator continues them, to `frames` in all.
+  NoiseVariable(const Dvgan& model, Sentences text, const RandomKey& key, std::size_t frames, Var given = {})
+      : model_(model), text_(std::move(text)), given_(std::move(given)) {
+    const Context& context = model.context();
+    const std::size_t batch = text_.batch, k = model.options().hidden;
+    const NoGrad values_only;
+    std::vector<Var> levels;
+    if (model.is_recurrent()) {
+      levels = {model.rnn().noise(context, key, batch, frames)};
+    } else {
+      require(frames == model.format().frames && given_.empty(), "a CNN generator makes its ",
+              model.format().frames, " frames at once, not ", frames);
+      cut_ = model.cnn().cuts(context, key, batch);
+      levels = model.cnn().noise(context, key, batch, cut_);
+    }
+    std::vector<Var> rows;
+    for (const Var& z : levels) {
+      level_frames_.push_back(z.dim(0));
+      rows.push_back(reshape(z, {z.dim(0) * batch, k}));
+    }
+    const Var drawn = concatenate(rows, 0);
+    drawn_ = drawn.detach();
+    lengths_ = sqrt(reshape(sum(square(drawn_), 1), {drawn_.dim(0), 1}) + 1e-12).detach();
+    variable_ = Var::leaf(drawn.value());
+  }
+
+  /// For an optimizer.
+  std::vector<NamedParameter> parameters() { return {{"noise", &variable_}}; }
+  const Var& variable() const { return variable_; }
+
+  /// Normalised motion [frames, B, dof] of the noise as it is.
+  Var motion() const {
+    const Var z = noise();
+    const std::size_t k = z.dim(1);
+    std::vector<Var> levels;
+    for (std::size_t at = 0; const std::size_t frames : level_frames_) {
+      levels.push_back(reshape(slice(z, 0, at, frames * text_.batch), {frames, text_.batch, k}));
+      at += frames * text_.batch;
+    }
+    return model_.is_recurrent() ? model_.rnn()(text_, levels.front(), {}, given_)
+                                 : model_.cnn()(text_, levels, cut_);
+  }
+
+  /// How far the noise has turned from where it was drawn, [1]: the sum over vectors of 1 - cosine.
+  Var turned_away() const {
+    const Var together = drawn_ * noise() / broadcast_to(square(lengths_), drawn_.shape());
+    return affine(sum(together), -1, static_cast<double>(drawn_.dim(0)));
+  }
+
+ private:
+  /// The variable with the lengths that were drawn.
+  Var noise() const {
+    const Var length = sqrt(reshape(sum(square(variable_), 1), {variable_.dim(0), 1}) + 1e-12);
+    return variable_ * broadcast_to(lengths_ / length, variable_.shape());
+  }
+
+  const Dvgan& model_;
+  Sentences text_;
+  Var given_;
+  Indices cut_;
+  std::vector<std::size_t> level_frames_;
+  Var drawn_, lengths_;  // [vectors, k], [vectors, 1]
+  Var variable_;
+};
+
+}  // namespace motiongan
