@@ -99,6 +99,7 @@
 #include "motiongan/networks/rnn_ranker.hpp"
 #include "motiongan/networks/rnn_stream.hpp"
 #include "motiongan/networks/seq2seq.hpp"
+#include "motiongan/networks/world_view.hpp"
 //
 #include "motiongan/models/action_gan.hpp"
 #include "motiongan/models/dvgan.hpp"
@@ -109,6 +110,7 @@
 #include "motiongan/train/dvgan_trainer.hpp"
 #include "motiongan/train/progress.hpp"
 #include "motiongan/train/ranker_trainer.hpp"
+#include "motiongan/train/saved_critic.hpp"
 #include "motiongan/train/train.hpp"
 #include "motiongan/train/training_cost.hpp"
 #include "motiongan/train/wgan_gp.hpp"
@@ -117,6 +119,16 @@
 #include "motiongan/sample/action_stream.hpp"
 #include "motiongan/sample/character_stream.hpp"
 #include "motiongan/sample/motion_stream.hpp"
+//
+#include "motiongan/direct/between.hpp"
+#include "motiongan/direct/checks.hpp"
+#include "motiongan/direct/constraints.hpp"
+#include "motiongan/direct/direct.hpp"
+#include "motiongan/direct/errors.hpp"
+#include "motiongan/direct/exact.hpp"
+#include "motiongan/direct/pace.hpp"
+#include "motiongan/direct/path.hpp"
+#include "motiongan/direct/path_file.hpp"
 //
 #include "motiongan/search/collection.hpp"
 #include "motiongan/search/distance.hpp"

@@ -66,7 +66,7 @@ inline std::vector<InBetween> fill_gaps(Dvgan& model, const std::vector<Gap>& ga
     options.frames = before + between + after;
     const double time = static_cast<double>(before + between) / format.rate;
     PoseConstraint end{.time = time, .pose = slice(gap.after, 0, after), .placed = gap.placed};
-    if (gap.placed && options.frames > format.frames) {  // the windows before the last one know the way
+    if (gap.placed) {  // the straight way, as long as nothing speaks against it
       const WorldPose a = world_pose(task.given, before - 1, root), b = world_pose(end.pose, 0, root);
       if (std::hypot(b.x - a.x, b.z - a.z) > 0.5 * motion::body_unit(format.skeleton()))
         task.guides.push_back(PathConstraint{
@@ -91,7 +91,8 @@ inline std::vector<InBetween> fill_gaps(Dvgan& model, const std::vector<Gap>& ga
                        .pose = slice(after, 0, std::min(detail::gap_context, after.frames)),
                        .placed = true}};
     all.skeleton = gap.before.skeleton;
-    all = meet_exactly(std::move(all), root, sides);
+    // What is off on one side changes evenly into what is off on the other.
+    all = meet_exactly(std::move(all), root, sides, std::max(gap.seconds, 0.4));
     out.push_back({.motion = join(join(gap.before, slice(all, before, between)), after),
                    .first = gap.before.frames,
                    .count = between,

@@ -48,8 +48,8 @@ class SmoothOffsets {
 /// Corrects one motion: first where it is, then its poses, then single joints.
 class ExactPass {
  public:
-  ExactPass(motion::Motion motion, std::size_t root, double seconds)
-      : motion_(std::move(motion)), root_(root), reach_(reach_seconds * motion_.rate), seconds_(seconds) {}
+  ExactPass(motion::Motion motion, std::size_t root, double seconds, double reach)
+      : motion_(std::move(motion)), root_(root), reach_(reach * motion_.rate), seconds_(seconds) {}
 
   motion::Motion run(const std::vector<Constraint>& constraints) {
     for (const Constraint& c : constraints)
@@ -78,8 +78,6 @@ class ExactPass {
   }
 
  private:
-  static constexpr double reach_seconds = 0.4;
-
   std::vector<std::size_t> frames(double from, double to) const {
     std::vector<std::size_t> out;
     for (std::size_t f = frame_at(from, motion_.rate); f <= frame_at(to, motion_.rate); ++f)
@@ -252,10 +250,10 @@ class ExactPass {
 /// constraint_errors(). A large correction shows; it is meant for what optimisation leaves. Throws Error as
 /// constraint_errors() does.
 inline motion::Motion meet_exactly(motion::Motion motion, std::size_t root,
-                                   const std::vector<Constraint>& constraints) {
+                                   const std::vector<Constraint>& constraints, double reach = 0.4) {
   require(motion.frames > 0, "a motion without frames meets no constraint");
   const double seconds = static_cast<double>(motion.frames - 1) / motion.rate;
-  return detail::ExactPass(std::move(motion), root, seconds).run(constraints);
+  return detail::ExactPass(std::move(motion), root, seconds, reach).run(constraints);
 }
 
 }  // namespace motiongan

@@ -88,7 +88,14 @@ class DirectObjective {
     way_z_ = Var::constant(Tensor::from(context, shape, ways_z_));
   }
 
-  /// The loss, [1], of normalised motion [N, B, dof], summed over the samples: squared lengths are in legs.
+  /// For loops: motions should not become loops by standing still, where `motion` [N, B, dof], their own
+  /// before the optimisation, moves.
+  void keep_moving(const Var& motion) {
+    if (loop_) activity_ = activity(view_(motion)).detach();
+  }
+
+  /// The loss, [1], of normalised motion [N, B, dof], summed over the samples: squared lengths are in
+  /// legs if a twentieth of a leg is allowed, and more or less otherwise.
   Var operator()(const Var& motion) const {
     const WorldRows world = view_(motion);
     const std::size_t poses = frames_ * batch_, root = format_.layout.root();
@@ -115,11 +122,17 @@ class DirectObjective {
   static constexpr double pace = 0.1,  // of the way along a path without times
       facing = 0.05,                   // of facing along it
       standing = 4,                    // of a foot's step from frame to frame
-      speed = 4;                       // of the movement at a loop's ends
+      speed = 4,                       // of the movement at a loop's ends
+      liveliness = 0.02;               // of moving less in a loop than before
 
   std::size_t pose_of(std::size_t frame) const { return (frame - first_) * batch_ + sample_; }
   bool inside(std::size_t frame) const { return frame >= first_ && frame < first_ + frames_; }
-  double per_square_leg(double weight) const { return weight / (leg_ * leg_); }
+  /// Errors count by what is allowed, in twentieths of a leg: what has to be met closely counts more.
+  template <class C>
+  double per_square_length(const C& c) const {
+    const double allowed = std::max(c.tolerance > 0 ? c.tolerance / leg_ : default_tolerance(c), 0.01);
+    return c.weight * (0.05 / allowed) * (0.05 / allowed) / (leg_ * leg_);
+  }
 
   /// A place relative to the anchor.
   motion::Vec3 local(motion::Vec3 p) const {
@@ -140,7 +153,7 @@ class DirectObjective {
   void take(const PoseConstraint& c) {
     const std::size_t at = frame_at(c.time, format_.rate), root = format_.layout.root();
     const double count = static_cast<double>(c.joints.empty() ? joints_ : c.joints.size());
-    const double weight = per_square_leg(c.weight / count);
+    const double weight = per_square_length(c) / count;
     for (std::size_t i = 0; i < c.pose.frames; ++i) {
       if (!inside(at + i)) continue;
       const WorldPose pose = world_pose(c.pose, i, root);
@@ -160,7 +173,7 @@ class DirectObjective {
     const std::size_t last = frame_at(c.to, format_.rate), root = format_.layout.root();
     for (std::size_t f = frame_at(c.from, format_.rate); f <= last; ++f) {
       if (!inside(f)) continue;
-      if (c.position) place(c.joint, f, *c.position, per_square_leg(c.weight));
+      if (c.position) place(c.joint, f, *c.position, per_square_length(c));
       if (!c.rotation) continue;
       const bool turns = c.joint == root && format_.layout.has_yaw();
       const motion::Vec3 r =
@@ -186,7 +199,7 @@ class DirectObjective {
       // Across the path, and along it.
       ways_x_[pose] = z, ways_z_[pose] = -x;
       ways_x_[poses + pose] = x, ways_z_[poses + pose] = z;
-      const double weight = per_square_leg(c.weight);
+      const double weight = per_square_length(c);
       ways_.add(0, pose, weight, z * p[0] - x * p[2]);
       ways_.add(1, pose, path.timed() || f == last ? weight : pace * weight, x * p[0] + z * p[2]);
       face(f, at.yaw.value_or(std::atan2(at.along_x, at.along_z)), at.yaw ? c.weight : facing * c.weight);
@@ -196,7 +209,7 @@ class DirectObjective {
   void take(const LoopConstraint& c) {
     const std::size_t last = frame_at(c.seconds > 0 ? c.seconds : seconds_, format_.rate);
     if (first_ > 0 || last >= frames_ || last < 2) return;
-    loop_ = last, loop_weight_ = c.weight;
+    loop_ = last, loop_weight_ = per_square_length(c);
   }
 
   void take(const ContactConstraint& c) {
@@ -206,7 +219,7 @@ class DirectObjective {
                                               : std::vector<std::size_t>();
     const bool on_floor =
         format_.layout.floor() && std::find(feet.begin(), feet.end(), c.joint) != feet.end();
-    const double weight = per_square_leg(c.weight);
+    const double weight = per_square_length(c);
     for (std::size_t f = frame_at(c.from, format_.rate); f <= last; ++f) {
       if (!inside(f)) continue;
       if (on_floor) places_.add(joints_ + c.joint, pose_of(f), weight, *format_.layout.floor());
@@ -214,6 +227,16 @@ class DirectObjective {
       for (std::size_t axis = 0; axis < 3; ++axis)
         steps_.add(axis * joints_ + c.joint, pose_of(f), standing * weight, 0);
     }
+  }
+
+  /// The logarithm of how much a motion moves: the mean square of its joints' steps in legs. [1, B].
+  Var activity(const WorldRows& world) const {
+    const std::size_t poses = frames_ * batch_;
+    const Var all = concatenate({world.x, world.y, world.z}, 0);
+    const Var steps = slice(all, 1, batch_, poses - batch_) - slice(all, 1, 0, poses - batch_);
+    const Var each = sum(square(steps), 0, 1 / (static_cast<double>(joints_) * leg_ * leg_));
+    const Var mean = sum(reshape(each, {frames_ - 1, batch_}), 0, 1 / static_cast<double>(frames_ - 1));
+    return reshape(log(mean + 1e-6), {1, batch_});
   }
 
   /// Of the pose at the loop's end beside the first, and of the movements there.
@@ -230,8 +253,10 @@ class DirectObjective {
       const Ground own = turned(way, at(world.cosine, to - 1), -at(world.sine, to - 1));
       return concatenate({own.x, own.z}, 0);
     };
-    const double weight = per_square_leg(loop_weight_), each = weight / static_cast<double>(joints_);
+    const double weight = loop_weight_, each = weight / static_cast<double>(joints_);
     Var loss = affine(sum(square(pose)), each);
+    if (!activity_.empty())
+      loss = weighted_sum(loss, 1, sum(square(relu(activity_ - activity(world)))), liveliness);
     loss = weighted_sum(loss, 1, sum(square(moves)), speed * each);
     return weighted_sum(loss, 1, sum(square(step(*loop_) - step(1))), speed * weight);
   }
@@ -248,6 +273,7 @@ class DirectObjective {
   Var way_x_, way_z_;
   std::optional<std::size_t> loop_;
   double loop_weight_ = 1;
+  Var activity_;
 };
 
 }  // namespace motiongan

@@ -25,6 +25,8 @@ struct ModelEvaluationOptions {
   FootSkateOptions feet{};
   double drift_seconds = 30;      ///< length of the motions that drift is measured on; RNN generators only
   std::size_t drift_motions = 8;  ///< their number; they cycle through the most frequent descriptions
+  /// Makes the motions of a description in place of the model. Unset: Dvgan::generate.
+  std::function<std::vector<motion::Motion>(const std::string& text, const GenerateOptions& wanted)> make = {};
   /// Applied to every generated motion before it is measured, such as motion::clean(); but not to those that
   /// drift is measured on. Unset: nothing.
   std::function<motion::Motion(motion::Motion)> finish = {};
@@ -199,7 +201,8 @@ inline ModelEvaluation evaluate_model(const Dvgan& model, const Ranker& ranker, 
     // Sample numbers continue from one description to the next, so that no two motions share their noise.
     const GenerateOptions wanted{
         .count = options.samples, .seed = options.seed, .first_sample = d * options.samples};
-    for (motion::Motion& made : model.generate(real.descriptions.texts[d], wanted)) {
+    const std::string& text = real.descriptions.texts[d];
+    for (motion::Motion& made : options.make ? options.make(text, wanted) : model.generate(text, wanted)) {
       motions.push_back(options.finish ? options.finish(std::move(made)) : std::move(made));
       right.push_back({d});
     }
