@@ -44,33 +44,34 @@ struct DirectOptions {
   std::size_t iterations = 300;  ///< at most, for each window
   double learning_rate = 0.1;    ///< of Adam
   double stay = 0.0003;          ///< weight of how far the noise turns away from where it was drawn
-  double realism = 0.001;        ///< weight of the score, if there is one
   bool exact = false;            ///< correct at last what is a little off, see meet_exactly()
   std::uint64_t seed = 1;
   std::size_t first_sample = 0;  ///< motion i of a seed begins with the noise of samples starts * i and more
-  /// Scores of normalised motion [N, B, dof] for its texts, [B], with derivatives, such as SavedCritic. The
-  /// optimisation raises it by `realism`, and of the starts that meet everything the one of the highest score
-  /// is kept. Not set: the one of the smallest error.
-  std::function<Var(const Var& motion, const Sentences& text)> score = {};
+  /// Scores of normalised motion [N, B, dof] for its texts, [B], such as SavedCritic: of the starts that meet
+  /// everything, the one of the highest score is kept. Not set: the one of the smallest error.
+  std::function<std::vector<float>(const Var& motion, const Sentences& text)> score = {};
   std::function<void(const DirectProgress&)> report = {};
   std::function<bool()> should_stop = {};  ///< ends early, with the best so far
 
   void list_fields(FieldList& list) {
     list.add(starts, {.key = "starts",
                       .help = "noises that are tried for a motion, side by side",
-                      .range = Range::between(1, 4096)});
+                      .range = Range::between(1, 4096),
+                      .saved = false});
     list.add(iterations, {.key = "direct_iterations",
                           .help = "steps of the optimisation at most, for each window",
-                          .range = Range::between(1, 1'000'000)});
-    list.add(learning_rate, {.key = "direct_rate", .help = "its step size (Adam)", .range = Range::above(0)});
-    list.add(realism, {.key = "direct_realism",
-                       .help = "weight of what the critic of the run thinks of the motion",
-                       .range = Range::at_least(0)});
+                          .range = Range::between(1, 1'000'000),
+                          .saved = false});
+    list.add(
+        learning_rate,
+        {.key = "direct_rate", .help = "its step size (Adam)", .range = Range::above(0), .saved = false});
     list.add(exact, {.key = "exact",
-                     .help = "correct at last what is a little off, so that constraints are met exactly"});
+                     .help = "correct at last what is a little off, so that constraints are met exactly",
+                     .saved = false});
     list.add(stay, {.key = "direct_stay",
                     .help = "weight of how far the noise turns away from where it was drawn",
-                    .range = Range::at_least(0)});
+                    .range = Range::at_least(0),
+                    .saved = false});
   }
 };
 
@@ -143,7 +144,7 @@ class Director {
   }
 
  private:
-  static constexpr std::size_t check_every = 10, least_iterations = 50;
+  static constexpr std::size_t check_every = 10;  // iterations
 
   /// What is asked of a task's window, besides its own constraints.
   std::vector<Constraint> constraints_of(std::size_t task, std::size_t first) const {
@@ -199,21 +200,17 @@ class Director {
     best_.assign(batch, {});
     // What a window leaves undone the next one has to mend, with its own constraints to meet.
     const double aim = window + 1 < windows ? 0.5 : 1;
-    // A critic has its say although everything may be met soon.
-    const std::size_t least = options_.score && options_.realism > 0 ? least_iterations : 0;
     std::size_t iteration = 0;
     for (;; ++iteration) {
       const Var made = noise.motion();
       if (iteration == 0) objective.keep_moving(made);
       const bool last = iteration == options_.iterations || (options_.should_stop && options_.should_stop());
       if (last || iteration % check_every == 0) {
-        const double worst = keep_best(made, first, frames, aim);
+        const double worst = keep_best(made, first, frames);
         if (options_.report) options_.report({window, windows, iteration, worst});
-        if (last || (iteration >= least && enough(aim))) break;
+        if (last || enough(aim)) break;
       }
-      Var loss = weighted_sum(objective(made), 1, noise.turned_away(), options_.stay);
-      if (options_.score && options_.realism > 0)
-        loss = weighted_sum(loss, 1, sum(options_.score(made, text)), -options_.realism);
+      const Var loss = weighted_sum(objective(made), 1, noise.turned_away(), options_.stay);
       // Smaller and smaller steps, so that the last ones settle.
       adam.set_rate_factor(0.5 + 0.5 * std::cos(motion::pi * static_cast<double>(iteration) /
                                                 static_cast<double>(options_.iterations)));
@@ -238,7 +235,7 @@ class Director {
     return Var::constant(Tensor::from(model_.context(), {frames, batch, dof}, all));
   }
 
-  /// A start's best so far: the one of the smallest error, until everything is met.
+  /// A start's best so far.
   struct Best {
     double excess = 0;
     std::vector<float> poses;  // normalised, [frames, dof]; empty: none yet
@@ -249,7 +246,7 @@ class Director {
   }
 
   /// Measures all starts; returns the excess of the worst task's best start.
-  double keep_best(const Var& made, std::size_t first, std::size_t frames, double aim) {
+  double keep_best(const Var& made, std::size_t first, std::size_t frames) {
     const std::size_t batch = best_.size(), dof = format_.dof();
     const std::vector<float> all = made.value().to_host();
     std::vector<double> of_task(tasks_.size(), std::numeric_limits<double>::infinity());
@@ -261,9 +258,7 @@ class Director {
       const std::size_t task = b / options_.starts;
       const double excess = largest_excess(
           constraint_errors(placed(poses, task), format_.layout.root(), asked_[task], first, seconds_));
-      // Of those that meet everything, the last.
-      if (best_[b].poses.empty() || excess < std::max(best_[b].excess, aim))
-        best_[b] = {excess, std::move(poses)};
+      if (best_[b].poses.empty() || excess < best_[b].excess) best_[b] = {excess, std::move(poses)};
       of_task[task] = std::min(of_task[task], best_[b].excess);
     }
     return *std::max_element(of_task.begin(), of_task.end());
@@ -289,9 +284,7 @@ class Director {
         std::copy_n(best_[b].poses.begin() + static_cast<std::ptrdiff_t>(f * dof), dof,
                     all.begin() + static_cast<std::ptrdiff_t>((f * batch + b) * dof));
     const NoGrad values_only;
-    return options_.score(Var::constant(Tensor::from(model_.context(), {frames, batch, dof}, all)), text)
-        .value()
-        .to_host();
+    return options_.score(Var::constant(Tensor::from(model_.context(), {frames, batch, dof}, all)), text);
   }
 
   /// Appends every task's best start to its motion.

@@ -1,7 +1,6 @@
 // The critic of a run, to score motions with.
 #pragma once
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,12 +19,13 @@ class SavedCritic {
       : SavedCritic(model, io::SafeTensors::read(checkpoint), checkpoint.string()) {}
 
   /// Scores of normalised motion [N or more frames, B, dof], of which the last N frames count, for its texts:
-  /// [B], with derivatives.
-  Var operator()(const Var& motion, const Sentences& text) const {
+  /// [B].
+  std::vector<float> operator()(const Var& motion, const Sentences& text) const {
+    const NoGrad values_only;
     require(motion.dim(0) >= frames_, "the critic scores motion of ", frames_, " frames, found ",
             motion.dim(0));
     const Var seen = sees_(slice(motion, 0, motion.dim(0) - frames_, frames_));
-    return critic_(seen, critic_.encode_text(text).detach());
+    return critic_(seen, critic_.encode_text(text)).value().to_host();
   }
 
  private:
@@ -35,7 +35,6 @@ class SavedCritic {
         sees_(model.context(), model.format(), options_.sees),
         critic_(Initializer(model.context(), 1), critic_sizes(model, sees_.size()), options_) {
     io::load_parameters(named_parameters(critic_), file, where, "critic.");
-    fixed_.emplace(named_parameters(critic_));
   }
 
   static DvganCriticOptions options_of(const io::SafeTensors& file, const std::string& where) {
@@ -48,7 +47,6 @@ class SavedCritic {
   DvganCriticOptions options_;
   CriticView sees_;
   DvganCritic critic_;
-  std::optional<Frozen> fixed_;  // its weights are not trained any more
 };
 
 }  // namespace motiongan
