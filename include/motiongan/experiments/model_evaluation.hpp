@@ -26,7 +26,8 @@ struct ModelEvaluationOptions {
   double drift_seconds = 30;      ///< length of the motions that drift is measured on; RNN generators only
   std::size_t drift_motions = 8;  ///< their number; they cycle through the most frequent descriptions
   /// Makes the motions of a description in place of the model. Unset: Dvgan::generate.
-  std::function<std::vector<motion::Motion>(const std::string& text, const GenerateOptions& wanted)> make = {};
+  std::function<std::vector<motion::Motion>(const std::string& text, const GenerateOptions& wanted)> make =
+      {};
   /// Applied to every generated motion before it is measured, such as motion::clean(); but not to those that
   /// drift is measured on. Unset: nothing.
   std::function<motion::Motion(motion::Motion)> finish = {};
