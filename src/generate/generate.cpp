@@ -90,13 +90,13 @@ std::optional<std::vector<motion::Motion>> write_long(const Dvgan& model, const 
   return write_streamed(model, job, drift);
 }
 
-/// Writes motions that meet what is asked for; prints how well they do.
+/// Writes directed motions, and returns them as written.
 std::vector<motion::Motion> write_directed(const std::vector<DirectedMotion>& made, const Dvgan& model,
                                            const GenerateArgs& args, const std::vector<fs::path>& files,
                                            TargetBody& body) {
   std::vector<motion::Motion> motions;
   for (const DirectedMotion& m : made) {
-    motions.push_back(args.cleaning.apply(body.put(m.motion)));
+    motions.push_back(body.put(m.motion));
     write_motion(files[motions.size() - 1], motions.back(), args.rate,
                  body.unit_metres(model.format().space.unit_metres), body.character());
   }
@@ -105,6 +105,7 @@ std::vector<motion::Motion> write_directed(const std::vector<DirectedMotion>& ma
 
 /// Directs motions of every text. Returns the exit status.
 int generate_directed(const GenerateArgs& args, const fs::path& file, const std::vector<std::string>& texts) {
+  require(args.drift.empty(), "--drift does not go with the options that direct a motion");
   const Context context;
   Dvgan model = load_with<Dvgan>(context, file, args.model, args.weights);
   const motion::MotionFormat& format = model.format();
@@ -114,6 +115,7 @@ int generate_directed(const GenerateArgs& args, const fs::path& file, const std:
   for (const std::string& text : texts) check_words(format, text, args.strict);
   make_folder(args.out);
   TargetBody body(args.retargeting);
+  const double rate = args.rate > 0 ? args.rate : format.rate;
   std::vector<view::ViewedMotion> shown;
   FileNames names;
   bool all_met = true;
@@ -121,12 +123,17 @@ int generate_directed(const GenerateArgs& args, const fs::path& file, const std:
   for (const std::string& text : texts) {
     const std::vector<fs::path> files =
         sample_files(args.out, names.next(text), args.options.first_sample, args.options.count, args.format);
-    const std::vector<DirectedMotion> made = make_directed(model, text, options, wanted, args.options);
+    std::vector<DirectedMotion> made = make_directed(model, text, options, wanted, args.options);
+    if (args.cleaning.on())  // what is measured is what is written, but for another skeleton
+      for (DirectedMotion& m : made) {
+        m.motion = args.cleaning.apply(std::move(m.motion));
+        m.errors = constraint_errors(m.motion, format.layout.root(), wanted.constraints);
+      }
     const std::vector<motion::Motion> motions = write_directed(made, model, args, files, body);
     files_made += files.size();
     fmt::print("\"{}\": {}, {} at {} per second, {} of optimisation\n", text, named(files),
-               counted(motions.front().frames, "frame"), brief(format.rate),
-               counted(made.front().iterations, "step"));
+               counted(motion::resampled_frames(motions.front().frames, format.rate, rate), "frame"),
+               brief(rate), counted(made.front().iterations, "step"));
     all_met = print_constraint_errors(made, format) && all_met;
     for (std::size_t i = 0; i < motions.size(); ++i)
       shown.push_back(

@@ -95,6 +95,7 @@ TEST_CASE("generate meets what it is asked for, exactly if asked, and says how w
       CHECK(no.status != 0);
       CHECK_MESSAGE(no.has(why), no.text);
     };
+    refused("--loop --drift d.csv", "--drift does not go with");
     refused("--path none.csv", "none.csv does not exist");
     write_file("one.csv", "1,2\n");
     refused("--path one.csv", "one.csv has 1 point");

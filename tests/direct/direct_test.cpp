@@ -203,6 +203,10 @@ TEST_CASE("mistakes are named before any work") {
   refused(LoopConstraint{.seconds = 0.2}, "shorter than two frames");
   refused(ContactConstraint{.joint = 1, .from = 0.2, .to = 0.2}, "less than a frame");
   refused(ContactConstraint{.joint = 1, .from = 0.4, .to = 0.2}, "before it begins");
+  CHECK_THROWS_WITH_AS(direct(model, {{.text = "walk",
+                                       .constraints = {PathConstraint{.points = {{0, 0}, {0, 0.1}}},
+                                                       PathConstraint{.points = {{0, 0}, {0.1, 0}}}}}}),
+                       doctest::Contains("follows one path, found 2"), Error);
   CHECK_THROWS_WITH_AS(find_joint(model.format().skeleton(), "no such joint"), doctest::Contains("nearest: "),
                        Error);
   const std::string first = model.format().skeleton().joints.front().name;

@@ -126,6 +126,24 @@ TEST_CASE("a loop compares its ends and the movement there") {
             .item() < 1e-9);
 }
 
+TEST_CASE("samples of a batch have loops of their own") {
+  const Placed from(RootRotation::support);
+  const Var two = Var::constant(windows_of(from.data, double_context(), 2)), one = slice(two, 1, 0, 1);
+  DirectObjective objective(double_context(), from.data.format, 8, 2);
+  objective.add(0, {LoopConstraint{}}, from.anchor, from.seconds);
+  objective.add(1, {}, from.anchor, from.seconds);
+  objective.finish(double_context());
+  CHECK(objective(two).item() == doctest::Approx(loss_of(from, {LoopConstraint{}}, one).item()));
+  // Standing still costs a loop something, and moving as before nothing.
+  DirectObjective lively(double_context(), from.data.format, 8, 1);
+  lively.add(0, {LoopConstraint{}}, from.anchor, from.seconds);
+  lively.finish(double_context());
+  const double before = lively(one).item();
+  lively.keep_moving(one);
+  CHECK(lively(one).item() == doctest::Approx(before));
+  CHECK(lively(affine(one, 0)).item() > 0.001);
+}
+
 TEST_CASE("paths have times, directions and distances") {
   const TimedPath path({{0, 0}, {0, 2}, {2, 2}}, 4);
   CHECK(path.length() == 4);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -166,6 +167,10 @@ inline void check_constraints(const motion::MotionFormat& format, const std::vec
                               const motion::RootTrack& start, double seconds) {
   const detail::ConstraintCheck check(format, start, seconds);
   for (const Constraint& c : constraints) std::visit(check, c);
+  const auto paths = std::count_if(constraints.begin(), constraints.end(), [](const Constraint& c) {
+    return std::holds_alternative<PathConstraint>(c);
+  });
+  require(paths <= 1, "a motion follows one path, found ", paths);
 }
 
 }  // namespace motiongan

@@ -1,8 +1,8 @@
 // The constraints as a loss on what a network makes, with derivatives.
 #pragma once
-#include <array>
+#include <algorithm>
 #include <cmath>
-#include <optional>
+#include <map>
 #include <vector>
 
 #include "motiongan/direct/path.hpp"
@@ -82,6 +82,10 @@ class DirectObjective {
   void finish(const Context& context) {
     for (detail::WeightedTargets* t : {&places_, &bodies_, &rotations_, &headings_, &ways_, &steps_})
       t->finish(context);
+    for (auto& [last, loop] : loops_) {
+      for (double& weight : loop.weights) weight = std::sqrt(weight);
+      loop.root_weight = Var::constant(Tensor::from(context, {1, batch_}, loop.weights));
+    }
     if (!ways_.used()) return;
     const Shape shape{2, frames_ * batch_};
     way_x_ = Var::constant(Tensor::from(context, shape, ways_x_));
@@ -91,7 +95,7 @@ class DirectObjective {
   /// For loops: motions should not become loops by standing still, where `motion` [N, B, dof], their own
   /// before the optimisation, moves.
   void keep_moving(const Var& motion) {
-    if (loop_) activity_ = activity(view_(motion)).detach();
+    if (!loops_.empty()) activity_ = activity(view_(motion)).detach();
   }
 
   /// The loss, [1], of normalised motion [N, B, dof], summed over the samples: squared lengths are in
@@ -113,7 +117,7 @@ class DirectObjective {
       const Var all = concatenate({world.x, world.y, world.z}, 0);
       loss = steps_.added(loss, slice(all, 1, batch_, poses - batch_) - slice(all, 1, 0, poses - batch_));
     }
-    if (loop_) loss = loss + loop_loss(world);
+    for (const auto& [last, loop] : loops_) loss = loss + loop_loss(world, last, loop.root_weight);
     return loss;
   }
 
@@ -209,7 +213,9 @@ class DirectObjective {
   void take(const LoopConstraint& c) {
     const std::size_t last = frame_at(c.seconds > 0 ? c.seconds : seconds_, format_.rate);
     if (first_ > 0 || last >= frames_ || last < 2) return;
-    loop_ = last, loop_weight_ = per_square_length(c);
+    std::vector<double>& weights = loops_[last].weights;
+    weights.resize(batch_, 0);
+    weights[sample_] += per_square_length(c);
   }
 
   void take(const ContactConstraint& c) {
@@ -239,13 +245,15 @@ class DirectObjective {
     return reshape(log(mean + 1e-6), {1, batch_});
   }
 
-  /// Of the pose at the loop's end beside the first, and of the movements there.
-  Var loop_loss(const WorldRows& world) const {
+  /// Of the pose at a loop's end beside the first, and of the movements there. `root_weight` [1, B] is 0 for
+  /// samples without this loop.
+  Var loop_loss(const WorldRows& world, std::size_t last, const Var& root_weight) const {
     const std::size_t root = format_.layout.root();
     const auto at = [&](const Var& v, std::size_t frame) { return slice(v, 1, frame * batch_, batch_); };
+    const auto squared = [&](const Var& v) { return sum(square(broadcast_to(root_weight, v.shape()) * v)); };
     const Var body = concatenate({world.body.x, world.y, world.body.z}, 0);
-    const Var pose = at(body, *loop_) - at(body, 0);
-    const Var moves = (at(body, *loop_) - at(body, *loop_ - 1)) - (at(body, 1) - at(body, 0));
+    const Var pose = at(body, last) - at(body, 0);
+    const Var moves = (at(body, last) - at(body, last - 1)) - (at(body, 1) - at(body, 0));
     // The root's step, in the heading of the frame that it comes from.
     const auto step = [&](std::size_t to) {
       const Var x = slice(world.x, 0, root, 1), z = slice(world.z, 0, root, 1);
@@ -253,12 +261,12 @@ class DirectObjective {
       const Ground own = turned(way, at(world.cosine, to - 1), -at(world.sine, to - 1));
       return concatenate({own.x, own.z}, 0);
     };
-    const double weight = loop_weight_, each = weight / static_cast<double>(joints_);
-    Var loss = affine(sum(square(pose)), each);
-    if (!activity_.empty())
-      loss = weighted_sum(loss, 1, sum(square(relu(activity_ - activity(world)))), liveliness);
-    loss = weighted_sum(loss, 1, sum(square(moves)), speed * each);
-    return weighted_sum(loss, 1, sum(square(step(*loop_) - step(1))), speed * weight);
+    const double each = 1 / static_cast<double>(joints_);
+    Var loss = affine(squared(pose), each);
+    loss = weighted_sum(loss, 1, squared(moves), speed * each);
+    loss = weighted_sum(loss, 1, squared(step(last) - step(1)), speed);
+    if (activity_.empty()) return loss;
+    return weighted_sum(loss, 1, squared(relu(activity_ - activity(world))), liveliness * leg_ * leg_);
   }
 
   WorldView view_;
@@ -271,8 +279,11 @@ class DirectObjective {
   detail::WeightedTargets places_, bodies_, rotations_, headings_, ways_, steps_;
   std::vector<double> ways_x_, ways_z_;
   Var way_x_, way_z_;
-  std::optional<std::size_t> loop_;
-  double loop_weight_ = 1;
+  struct Loop {
+    std::vector<double> weights;  // per sample
+    Var root_weight;              // [1, B]
+  };
+  std::map<std::size_t, Loop> loops_;  // by their last frame
   Var activity_;
 };
 
