@@ -58,8 +58,8 @@ kernel void joint_positions(global const real* q, uint q0, global const real* of
         for (uint c = 0; c < 3; ++c) sum += above.m[3 * r + c] * offsets[3 * j + c];
         at[r] = sum;
         for (uint c = 0; c < 3; ++c)
-          global_one.m[3 * r + c] =
-              above.m[3 * r] * own.m[c] + above.m[3 * r + 1] * own.m[3 + c] + above.m[3 * r + 2] * own.m[6 + c];
+          global_one.m[3 * r + c] = above.m[3 * r] * own.m[c] + above.m[3 * r + 1] * own.m[3 + c] +
+                                    above.m[3 * r + 2] * own.m[6 + c];
       }
     }
     for (uint r = 0; r < 3; ++r) store_some(at[r], positions + (3 * j + r) * poses, left);
@@ -89,8 +89,7 @@ static inline void turn_gradient(Turn t, Matrix d, realv out[3]) {
     about += twist[e] * r[e];
   }
   const realv stretch = 2 * (da * about + db * (along - t.s * trace));
-  for (uint e = 0; e < 3; ++e)
-    out[e] = t.a * twist[e] + stretch * r[e] + t.b * (mixed[e] - 2 * trace * r[e]);
+  for (uint e = 0; e < 3; ++e) out[e] = t.a * twist[e] + stretch * r[e] + t.b * (mixed[e] - 2 * trace * r[e]);
 }
 
 /// The gradient of q [3 * joints, poses] for the gradient g [3 * joints, poses] of the positions.

@@ -1,5 +1,6 @@
 // motiongan inbetween: fills the gap between two clips.
 #include "generate/directing.hpp"
+#include "generate/streaming.hpp"
 #include "motiongan/direct/between.hpp"
 #include "shared/cleaning.hpp"
 #include "shared/clip_reading.hpp"

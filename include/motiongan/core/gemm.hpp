@@ -67,7 +67,7 @@ inline Tensor pack_b(const Context& context, const GemmCall& call,
                             call.b_offset[2],
                             call.b_offset[3]};
   return detail::packed_once(call.b, key, [&] {
-    const Tensor packed = detail::packed_panels(context, call.segments * panels, call.k, call.b_in_16_bits);
+    Tensor packed = detail::packed_panels(context, call.segments * panels, call.k, call.b_in_16_bits);
     for (std::size_t s = 0; s < call.segments; ++s) {
       detail::check_matrix(call, "B", call.b, call.b_offset[s], call.b_transposed ? call.n : call.k,
                            call.b_transposed ? call.k : call.n, call.b_ld, 0);

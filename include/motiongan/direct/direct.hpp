@@ -106,14 +106,13 @@ class Director {
     if (std::all_of(tasks.begin(), tasks.end(),
                     [&](const DirectTask& t) { return t.given.frames > 0 && t.given.skeleton == body; }))
       format_.layout = format_.layout.of_body(body);
-    for (std::size_t i = 0; i < tasks.size(); ++i)
-      check_constraints(format_, tasks[i].constraints, anchor_of_task(tasks[i]), seconds_);
     // An RNN generator continues any motion; windows of a CNN generator overlap.
     overlap_ = std::min<std::size_t>(8, format_.frames / 4);
-    for (std::size_t i = 0; i < tasks.size(); ++i) {
+    for (const DirectTask& task : tasks) {
+      check_constraints(format_, task.constraints, anchor_of_task(task), seconds_);
       made_.emplace_back();
-      made_.back().motion = tasks[i].given;
-      sentences_.push_back(format_.vocabulary.encode(tasks[i].text));
+      made_.back().motion = task.given;
+      sentences_.push_back(format_.vocabulary.encode(task.text));
     }
   }
 

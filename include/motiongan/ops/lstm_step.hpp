@@ -46,7 +46,7 @@ class LstmStepper {
     if (choose_engine(context, GemmEngine::automatic) != GemmEngine::native) return;
     const std::size_t panels = 2 * vectors(context, k_);
     packed_ = packed_once(weight, {in_16_bits ? 5U : 4U, in_, k_}, [&] {
-      const Tensor packed = packed_panels(context, panels, in_, in_16_bits);
+      Tensor packed = packed_panels(context, panels, in_, in_16_bits);
       context.launch(kernels_, "gemm_pack_gates",
                      LaunchGrid::groups(panels, (in_ + gemm_block(context) - 1) / gemm_block(context)),
                      weight, in_, k_, packed);
