@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -153,7 +154,10 @@ class Director {
       for (Constraint& c : out)
         if (const auto* const loop = std::get_if<LoopConstraint>(&c)) {
           const double last = loop->seconds > 0 ? loop->seconds : seconds_;
-          c = PoseConstraint{.time = last, .pose = slice(so_far, 0, 2), .weight = loop->weight};
+          c = PoseConstraint{.time = last,
+                             .pose = slice(so_far, 0, 2),
+                             .weight = loop->weight,
+                             .tolerance = loop->tolerance};
         }
     if (!model_.is_recurrent() && so_far.frames > first)
       out.push_back(PoseConstraint{.time = static_cast<double>(first) / format_.rate,
@@ -215,22 +219,28 @@ class Director {
                                                 static_cast<double>(options_.iterations)));
       adam.step(grad(loss, {noise.variable()}));
     }
-    choose(text, first, frames, iteration, aim);
+    choose(text, first, iteration, aim);
   }
 
   /// The frames before the window that an RNN generator continues, normalised [n, B, dof].
   Var given_poses(std::size_t first) const {
     if (!model_.is_recurrent() || made_.front().motion.frames <= first) return {};
-    const std::size_t frames = made_.front().motion.frames - first, dof = format_.dof(),
-                      batch = made_.size() * options_.starts;
-    std::vector<double> all(frames * batch * dof);
-    for (std::size_t i = 0; i < made_.size(); ++i) {
-      const std::vector<float> poses = format_.encode_window(slice(made_[i].motion, first, frames));
-      for (std::size_t f = 0; f < frames; ++f)
-        for (std::size_t s = 0; s < options_.starts; ++s)
-          std::copy_n(poses.begin() + static_cast<std::ptrdiff_t>(f * dof), dof,
-                      all.begin() + static_cast<std::ptrdiff_t>((f * batch + i * options_.starts + s) * dof));
+    std::vector<std::vector<float>> all;
+    for (const DirectedMotion& made : made_) {
+      const std::size_t frames = made.motion.frames - first;
+      all.insert(all.end(), options_.starts, format_.encode_window(slice(made.motion, first, frames)));
     }
+    return batch_of(all);
+  }
+
+  /// Samples [frames, dof] as one batch [frames, B, dof].
+  Var batch_of(const std::vector<std::vector<float>>& samples) const {
+    const std::size_t batch = samples.size(), dof = format_.dof(), frames = samples.front().size() / dof;
+    std::vector<float> all(frames * batch * dof);
+    for (std::size_t b = 0; b < batch; ++b)
+      for (std::size_t f = 0; f < frames; ++f)
+        std::copy_n(samples[b].begin() + static_cast<std::ptrdiff_t>(f * dof), dof,
+                    all.begin() + static_cast<std::ptrdiff_t>((f * batch + b) * dof));
     return Var::constant(Tensor::from(model_.context(), {frames, batch, dof}, all));
   }
 
@@ -274,22 +284,17 @@ class Director {
   }
 
   /// Scores of the best of all starts, [B]; empty without a critic.
-  std::vector<float> scores(const Sentences& text, std::size_t frames) const {
+  std::vector<float> scores(const Sentences& text) const {
     if (!options_.score) return {};
-    const std::size_t batch = best_.size(), dof = format_.dof();
-    std::vector<double> all(frames * batch * dof);
-    for (std::size_t b = 0; b < batch; ++b)
-      for (std::size_t f = 0; f < frames; ++f)
-        std::copy_n(best_[b].poses.begin() + static_cast<std::ptrdiff_t>(f * dof), dof,
-                    all.begin() + static_cast<std::ptrdiff_t>((f * batch + b) * dof));
+    std::vector<std::vector<float>> all;
+    for (const Best& best : best_) all.push_back(best.poses);
     const NoGrad values_only;
-    return options_.score(Var::constant(Tensor::from(model_.context(), {frames, batch, dof}, all)), text);
+    return options_.score(batch_of(all), text);
   }
 
   /// Appends every task's best start to its motion.
-  void choose(const Sentences& text, std::size_t first, std::size_t frames, std::size_t iterations,
-              double aim) {
-    const std::vector<float> score = scores(text, frames);
+  void choose(const Sentences& text, std::size_t first, std::size_t iterations, double aim) {
+    const std::vector<float> score = scores(text);
     for (std::size_t i = 0; i < tasks_.size(); ++i) {
       std::size_t best = i * options_.starts;
       const auto better = [&](std::size_t a, std::size_t b) {
