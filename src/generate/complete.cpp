@@ -11,6 +11,7 @@
 #include "shared/motion_files.hpp"
 #include "shared/outputs.hpp"
 #include "shared/prompt.hpp"
+#include "shared/sampling.hpp"
 #include "shared/show.hpp"
 #include "shared/signals.hpp"
 #include "shared/weights.hpp"
@@ -247,19 +248,8 @@ const Verb complete_verb{
       option("--count", args->count, "number of different continuations")
           ->check(positive())
           ->capture_default_str();
-      option("--seed", args->seed, "random seed; another one gives other continuations")
-          ->check(not_negative())
-          ->capture_default_str();
-      option("--first-sample", args->first_sample, "number of the first sample")
-          ->check(not_negative())
-          ->capture_default_str();
-      option("--rate", args->rate, "frames per second of the files, by interpolation [the model's]")
-          ->check(CLI::Range(1e-3, 1e4))
-          ->type_name("HZ");
+      add_sampling_options(*verb, args->seed, args->first_sample, args->rate, args->out, "continuations");
       add_reading_options(*verb, args->clips, false);
-      option("--out", args->out, "folder to write to; created if missing")
-          ->capture_default_str()
-          ->type_name("DIR");
       option("--html", args->html, "also write an HTML page: the clip next to its continuations")
           ->type_name("FILE");
       option("--png", args->png, "also write a picture of their poses")->type_name("FILE");

@@ -9,6 +9,7 @@
 #include "shared/cleaning.hpp"
 #include "shared/outputs.hpp"
 #include "shared/prompt.hpp"
+#include "shared/sampling.hpp"
 #include "shared/show.hpp"
 #include "shared/signals.hpp"
 
@@ -261,12 +262,8 @@ const Verb generate_verb{
                        "motions for each text, or for the schedule of classes")
           ->check(positive())
           ->capture_default_str();
-      verb->add_option("--seed", args->options.seed, "random seed; another one gives other motions")
-          ->check(not_negative())
-          ->capture_default_str();
-      verb->add_option("--first-sample", args->options.first_sample, "number of the first sample")
-          ->check(not_negative())
-          ->capture_default_str();
+      add_sampling_options(*verb, args->options.seed, args->options.first_sample, args->rate, args->out,
+                           "motions");
       verb->add_option("--frames", args->options.frames,
                        "frames of each motion, at the model's rate; other numbers need an RNN generator [the "
                        "model's]")
@@ -275,12 +272,6 @@ const Verb generate_verb{
       verb->add_option("--drift", args->drift,
                        "table to write: drift from the training data, second by second")
           ->type_name("FILE.csv");
-      verb->add_option("--rate", args->rate, "frames per second of the files, by interpolation [the model's]")
-          ->check(CLI::Range(1e-3, 1e4))
-          ->type_name("HZ");
-      verb->add_option("--out", args->out, "folder to write to; created if missing")
-          ->capture_default_str()
-          ->type_name("DIR");
       verb->add_option("--html", args->html, "also write an HTML page that plays the motions")
           ->type_name("FILE");
       verb->add_option("--png", args->png, "also write a picture of their poses")->type_name("FILE");

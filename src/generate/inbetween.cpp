@@ -8,6 +8,7 @@
 #include "shared/outputs.hpp"
 #include "shared/prompt.hpp"
 #include "shared/retargeting.hpp"
+#include "shared/sampling.hpp"
 #include "shared/show.hpp"
 #include "shared/signals.hpp"
 #include "shared/weights.hpp"
@@ -131,19 +132,8 @@ const Verb inbetween_verb{
           ->check(CLI::IsMember({"keep", "free"}))
           ->capture_default_str();
       option("--count", args->count, "number of different motions")->check(positive())->capture_default_str();
-      option("--seed", args->seed, "random seed; another one gives other motions")
-          ->check(not_negative())
-          ->capture_default_str();
-      option("--first-sample", args->first_sample, "number of the first sample")
-          ->check(not_negative())
-          ->capture_default_str();
-      option("--rate", args->rate, "frames per second of the files, by interpolation [the model's]")
-          ->check(CLI::Range(1e-3, 1e4))
-          ->type_name("HZ");
+      add_sampling_options(*verb, args->seed, args->first_sample, args->rate, args->out, "motions");
       add_reading_options(*verb, args->clips, false);
-      option("--out", args->out, "folder to write to; created if missing")
-          ->capture_default_str()
-          ->type_name("DIR");
       option("--html", args->html, "also write an HTML page that plays the motions")->type_name("FILE");
       option("--png", args->png, "also write a picture of their poses")->type_name("FILE");
       add_weights_option(*verb, args->weights);
