@@ -26,10 +26,12 @@ const part = (from, to) => {
   return page.slice(at, page.indexOf(to, at));
 };
 const data = part('<script id="clips" type="application/json">', "</script>");
-const counts = { drawn: 0, lines: 0, bad: 0 };
+const counts = { drawn: 0, lines: 0, dashed: 0, bad: 0 };
 const check = (...list) => { for (const x of list) if (!Number.isFinite(x)) ++counts.bad; };
-const pen = { setTransform() { ++counts.drawn; }, fillRect() {}, beginPath() {}, stroke() { ++counts.lines; },
-  fill() {}, fillText() {}, moveTo: check, lineTo: check, arc: check };
+let dashes = 0;
+const pen = { setTransform() { ++counts.drawn; }, fillRect() {}, beginPath() {}, fill() {}, fillText() {},
+  stroke() { ++counts.lines; if (dashes) ++counts.dashed; }, setLineDash(list) { dashes = list.length; },
+  moveTo: check, lineTo: check, arc: check };
 const make = name => ({ name, style: { setProperty() {} }, dataset: {}, children: [], clientWidth: 400,
   clientHeight: 300, checked: true, options: [{ text: "1" }], append(...list) { this.children.push(...list); },
   addEventListener() {}, getContext: () => pen, click() {} });
@@ -55,7 +57,8 @@ const said = { clips: sight.seen.length, before: next() };
 counts.drawn = 0; show(0, 3, true); said.appearing = counts.drawn;
 said.three = next();
 show(0, 2, false); said.one = next();
-elements.follow.checked = false; counts.lines = 0; next(); said.lines = counts.lines;
+elements.follow.checked = false; counts.lines = counts.dashed = 0; next();
+said.lines = counts.lines; said.dashed = counts.dashed;
 said.bad = counts.bad;
 console.log(Object.entries(said).map(([key, value]) => `${key}=${value}`).join(" "));
 )";
@@ -108,4 +111,21 @@ TEST_CASE("a figure that travels far is drawn with few lines and finite coordina
   const std::size_t at = said.find("lines=");
   REQUIRE(at != std::string::npos);
   CHECK(std::stoul(said.substr(at + 6)) < 500);
+}
+
+TEST_CASE("a path is drawn dashed, a target and a ghost beside the figure, all in finite coordinates") {
+  if (!has_node()) return;
+  auto motions = std::vector(3, test::walker(4));
+  const std::string plain = run_page(motions);
+  CAPTURE(plain);
+  CHECK(plain.ends_with(" dashed=0 bad=0\n"));
+  motions[2].marks.path = {{0, 0, 0}, {50, 0, 20}, {100, 0, 0}};
+  motions[2].marks.targets = {{{10, 120, 5}, 0, 0.1}};
+  motions[2].marks.ghosts = {test::walker(1).motion};
+  const std::string marked = run_page(motions);
+  CAPTURE(marked);
+  CHECK(marked.ends_with(" dashed=1 bad=0\n"));
+  const auto lines = [](const std::string& said) { return std::stoul(said.substr(said.find("lines=") + 6)); };
+  // The path, the target's line and its circle, and the ghost's limbs.
+  CHECK(lines(marked) > lines(plain) + 3);
 }
