@@ -5,7 +5,6 @@
 // Lengths are in leg lengths. The peer of a gap is slerp between its ends. With a ranker, motions of the test
 // descriptions are directed (to a pose of another motion of their description; along the way of another, bent
 // by 45 degrees) and measured as `evaluate model` does, beside undirected ones.
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -13,20 +12,17 @@
 #include <motiongan/direct/between.hpp>
 #include <motiongan/direct/pace.hpp>
 #include <motiongan/experiments/model_evaluation.hpp>
-#include <motiongan/metrics/motion_quality.hpp>
 #include <motiongan/metrics/npss.hpp>
 #include <motiongan/train/run.hpp>
 #include <motiongan/train/saved_critic.hpp>
 #include <numeric>
 
+#include "directed_help.hpp"
+
 using namespace motiongan;
 using motion::Motion;
 
 namespace {
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 class Study {
  public:
@@ -60,8 +56,8 @@ class Study {
     }
     std::printf("paths: %zu of %.1f legs, %zu frames; met %.0f; distance mean %.4f, worst %.4f legs\n",
                 made.size(), way / leg_, options.frames, met, mean, worst);
-    quality("  directed", motions);
-    quality("  free", model_.generate("walk", {.count = rounds_, .first_sample = 5000}));
+    print_quality("  directed", motions);
+    print_quality("  free", model_.generate("walk", {.count = rounds_, .first_sample = 5000}));
   }
 
   void gaps(const motion::Dataset& data) {
@@ -109,8 +105,8 @@ class Study {
         iterations / n, 1e3 * one, 1e3 * sixteen / 16);
     std::printf("  joints to the truth: ours %.4f, slerp %.4f legs; NPSS ours %.4f, slerp %.4f\n", ours / n,
                 slerp / n, npss_ours.value(), npss_slerp.value());
-    quality("  ours", motions);
-    quality("  truth", truths);
+    print_quality("  ours", motions);
+    print_quality("  truth", truths);
   }
 
   void loops() {
@@ -120,16 +116,17 @@ class Study {
     std::vector<Motion> motions;
     for (const DirectedMotion& m : made) {
       const std::size_t last = m.motion.frames - 1;
-      seam += body_step(m.motion, last, 0) / leg_;
+      seam += body_step(world_pose(m.motion, last, root_), world_pose(m.motion, 0, root_)) / leg_;
       for (std::size_t f = 0; f < last; ++f)
-        ordinary += body_step(m.motion, f, f + 1) / leg_ / static_cast<double>(last);
+        ordinary += body_step(world_pose(m.motion, f, root_), world_pose(m.motion, f + 1, root_)) / leg_ /
+                    static_cast<double>(last);
       met += m.met() ? 1 : 0;
       motions.push_back(m.motion);
     }
     const double n = static_cast<double>(made.size());
     std::printf("loops: %zu; met %.0f; seam %.4f legs, an ordinary step %.4f\n", made.size(), met, seam / n,
                 ordinary / n);
-    quality("  directed", motions);
+    print_quality("  directed", motions);
   }
 
   void loss(const motion::Dataset& data, const Ranker& ranker) {
@@ -173,30 +170,6 @@ class Study {
     return direct(model_, tasks, options);
   }
 
-  /// A path of `way` that bends left and right.
-  static std::vector<PathPoint> random_path(std::size_t number, double way) {
-    const RandomKey key{.seed = 11, .stream = RandomStream::windows};
-    const auto draw = [&](std::uint32_t k) {
-      return static_cast<double>(random_below(key, static_cast<std::uint32_t>(number), 2001, k)) / 1000 - 1;
-    };
-    std::vector<PathPoint> out;
-    double x = 0, z = 0;
-    constexpr int points = 40;
-    for (int i = 0; i <= points; ++i) {
-      out.push_back({x, z});
-      const double t = 2 * motion::pi * i / points;
-      const double yaw = 0.9 * (draw(0) * std::sin(t) + draw(1) * std::sin(2 * t) / 2 + draw(2) * t / 3);
-      x += way / points * std::sin(yaw), z += way / points * std::cos(yaw);
-    }
-    return out;
-  }
-
-  void quality(const char* name, const std::vector<Motion>& motions) const {
-    const MotionQuality q = measure_quality(motions);
-    std::printf("%s: jerk %.1f legs/s^3, skate %.1f %%, near the floor %.1f %%\n", name, q.jerk,
-                100 * q.feet->ratio(), 100 * q.feet->contact_share());
-  }
-
   /// The frames between, each joint turned evenly from one end to the other.
   static Motion interpolated(const Motion& whole, std::size_t first, std::size_t count) {
     Motion out = slice(whole, first, count);
@@ -220,17 +193,6 @@ class Study {
   }
 
   std::vector<double> motion_angles(const Motion& m) const { return prediction_angles(m, root_); }
-
-  /// The root mean square distance of the joints about the root in two frames.
-  double body_step(const Motion& m, std::size_t a, std::size_t b) const {
-    const WorldPose p = world_pose(m, a, root_), q = world_pose(m, b, root_);
-    double sum = 0;
-    for (std::size_t j = 0; j < p.body.size(); ++j) {
-      const motion::Vec3 d = motion::subtract(p.body[j], q.body[j]);
-      sum += motion::dot(d, d);
-    }
-    return std::sqrt(sum / static_cast<double>(p.body.size()));
-  }
 
   template <class ConstraintOf>
   std::vector<Motion> directed(const std::string& text, const GenerateOptions& wanted,

@@ -120,6 +120,7 @@
 #include "motiongan/sample/character_stream.hpp"
 #include "motiongan/sample/motion_stream.hpp"
 //
+#include "motiongan/direct/action_direct.hpp"
 #include "motiongan/direct/between.hpp"
 #include "motiongan/direct/checks.hpp"
 #include "motiongan/direct/constraints.hpp"

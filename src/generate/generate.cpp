@@ -135,7 +135,9 @@ int generate_directed(const GenerateArgs& args, const fs::path& file, const std:
     fmt::print("\"{}\": {}, {} at {} per second, {} of optimisation\n", text, named(files),
                counted(motion::resampled_frames(motions.front().frames, format.rate, rate), "frame"),
                brief(rate), counted(made.front().iterations, "step"));
-    all_met = print_constraint_errors(made, format) && all_met;
+    std::vector<std::vector<ConstraintError>> errors;
+    for (const DirectedMotion& m : made) errors.push_back(m.errors);
+    all_met = print_constraint_errors(errors, motion::body_unit(format.skeleton())) && all_met;
     for (std::size_t i = 0; i < motions.size(); ++i)
       shown.push_back(
           {args.options.count > 1 ? fmt::format("{} ({})", text, args.options.first_sample + i) : text,
@@ -223,8 +225,7 @@ int generate_either(const GenerateArgs& args, ActionGenerateArgs actions, const 
             wrong, "; use --text \"walk\"");
     return generate(args, file);
   }
-  for (const char* name :
-       {"--text", "--prompts", "--drift", "--path", "--keyframe", "--hand", "--joint", "--stand", "--loop"})
+  for (const char* name : {"--text", "--prompts", "--drift"})
     require(verb.count(name) == 0, file.string(), " generates motion for classes: it takes no ", name,
             "; use --class NAME");
   actions.model = args.model, actions.out = args.out, actions.html = args.html, actions.png = args.png;
@@ -232,7 +233,7 @@ int generate_either(const GenerateArgs& args, ActionGenerateArgs actions, const 
   actions.first_sample = args.options.first_sample, actions.seed = args.options.seed,
   actions.rate = args.rate;
   actions.weights = args.weights, actions.cleaning = args.cleaning, actions.format = args.format;
-  actions.retargeting = args.retargeting;
+  actions.retargeting = args.retargeting, actions.directing = args.directing;
   return generate_actions(actions, verb, file);
 }
 

@@ -13,16 +13,21 @@
 namespace motiongan::command {
 namespace {
 
-constexpr std::size_t characters_at_a_time = 64;
+constexpr std::size_t characters_at_a_time = 64, directed_at_a_time = 16;
+
+/// Whether the options say how long motions are.
+bool has_length(const ActionGenerateArgs& args) {
+  const std::size_t comma = args.schedule.rfind(','), colon = args.schedule.rfind(':');
+  const bool timed = colon != std::string::npos && (comma == std::string::npos || colon > comma);
+  return args.frames > 0 || args.seconds > 0 || timed;
+}
 
 /// Duration in seconds; 0 if the schedule gives it.
 double asked_seconds(const ActionGenerateArgs& args, double rate) {
   require(args.seconds <= 0 || args.frames == 0, "give --seconds or --frames, not both");
   if (args.frames > 0) return static_cast<double>(args.frames) / rate;
   if (args.seconds > 0) return args.seconds;
-  const std::size_t comma = args.schedule.rfind(','), colon = args.schedule.rfind(':');
-  const bool timed = colon != std::string::npos && (comma == std::string::npos || colon > comma);
-  return timed ? 0 : 10;
+  return has_length(args) ? 0 : 10;
 }
 
 /// The priors; `inputs` are the files, or the folder, that they were read from.
@@ -95,6 +100,28 @@ void draw_attention(const ActionGenerateArgs& args, const ActionGan& model,
              brief(model.generator().attention()->gamma.item(), 3));
 }
 
+/// Cleans directed motions up, measures what is written of them, and leaves the given second out if it is not
+/// wanted.
+void finish_directed(const ActionGenerateArgs& args, const motion::PositionFormat& format,
+                     const Direction& wanted, std::vector<DirectedAction>& directed,
+                     std::vector<motion::PositionClip>& clips, std::vector<motion::Motion>& motions) {
+  for (std::size_t i = 0; i < directed.size(); ++i) {
+    motion::Motion& motion = motions[i];
+    if (args.cleaning.on()) {
+      motion = args.cleaning.apply(std::move(motion), format.frames);
+      directed[i].clip.positions = motion::joint_positions(motion);
+      directed[i].errors = constraint_errors(format, from_last_given(directed[i]), wanted.constraints);
+    }
+    if (args.with_prior) continue;
+    clips[i] = from_last_given(directed[i]);
+    clips[i].positions.erase(
+        clips[i].positions.begin(),
+        clips[i].positions.begin() + static_cast<std::ptrdiff_t>(clips[i].skeleton.size()));
+    --clips[i].frames;
+    if (motion.frames > 0) motion = slice(motion, format.frames, motion.frames - format.frames);
+  }
+}
+
 std::string name_of(const motion::PositionFormat& format, const ActionSchedule& schedule) {
   std::string classes;
   for (const ActionPiece& piece : schedule) classes += format.classes[piece.label] + " ";
@@ -110,7 +137,10 @@ void add_action_options(CLI::App& verb, ActionGenerateArgs& a) {
   };
   option("--class", a.schedule, "a class, or a sequence of classes such as walk:3s,run:90 (frames)")
       ->type_name("SCHEDULE");
-  option("--seconds", a.seconds, "duration, if --class does not give it [10]")->check(positive());
+  option("--seconds", a.seconds,
+         "duration, if --class does not give it [10; as long as what is asked for needs, if "
+         "the motion is directed]")
+      ->check(positive());
   option("--from", a.from,
          "clip with the second to continue; may be repeated [drawn from the run's test "
          "clips]")
@@ -141,13 +171,12 @@ std::string given_action_options(const CLI::App& verb) {
 
 int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const fs::path& file) {
   const Context context;
-  const ActionGan model = load_with<ActionGan>(context, file, args.model, args.weights);
+  ActionGan model = load_with<ActionGan>(context, file, args.model, args.weights);
   const motion::PositionFormat& format = model.format();
   require(!args.schedule.empty(),
           "no class is given; use --class NAME or --class NAME:3s,OTHER:5s. The classes are: ",
           quoted_list(format.classes));
-  const ActionSchedule schedule =
-      parse_action_schedule(args.schedule, format, asked_seconds(args, format.rate));
+  ActionSchedule schedule = parse_action_schedule(args.schedule, format, asked_seconds(args, format.rate));
   const bool rotates = has_rotations(args.format);
   require(!args.cleaning.on() || rotates, "--clean works on rotations, which --format ", args.format,
           " does not hold; use --format bvh");
@@ -161,6 +190,19 @@ int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const
             "--attention-map: this model has no attention");
   std::vector<fs::path> files, inputs;
   const std::vector<GivenPrior> priors = find_priors(args, verb, file, model, first_label, inputs);
+  Direction wanted;
+  DirectOptions direct_options = args.directing.options;
+  if (args.directing.on()) {
+    wanted = read_direction(args.directing, format);
+    use_critic(direct_options, model, args.model);
+    direct_options.seed = args.seed;
+    if (!has_length(args)) {
+      std::vector<ActionPrior> some;
+      for (const GivenPrior& prior : priors) some.push_back(prior.prior);
+      const std::size_t needed = frames_needed(model, some, first_label, wanted, args.seed);
+      schedule = parse_action_schedule(args.schedule, format, static_cast<double>(needed) / format.rate);
+    }
+  }
   const fs::path out = args.out;
   const std::string name = name_of(format, schedule);
   for (std::size_t i = 0; i < priors.size(); ++i)
@@ -171,23 +213,35 @@ int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const
   if (!rotates) write_bones_beside(out, priors.front().prior.skeleton);
   const bool shows = !args.html.empty() || !args.png.empty();
   std::vector<view::ViewedMotion> shown;
-  for (std::size_t first = 0; first < priors.size(); first += characters_at_a_time) {
-    const std::size_t count = std::min(characters_at_a_time, priors.size() - first);
+  std::vector<std::vector<ConstraintError>> errors;
+  const std::size_t at_a_time = args.directing.on() ? directed_at_a_time : characters_at_a_time;
+  for (std::size_t first = 0; first < priors.size(); first += at_a_time) {
+    const std::size_t count = std::min(at_a_time, priors.size() - first);
     std::vector<ActionPrior> some;
     for (std::size_t i = 0; i < count; ++i) some.push_back(priors[first + i].prior);
-    const std::vector<motion::PositionClip> clips =
-        model.generate(some, schedule,
-                       {.with_prior = args.with_prior,
-                        .seed = args.seed,
-                        .first_sample = static_cast<std::uint32_t>(args.first_sample + first)});
+    std::vector<motion::PositionClip> clips;
+    std::vector<DirectedAction> directed;
+    if (args.directing.on()) {
+      direct_options.first_sample = args.first_sample + first;
+      directed = make_directed(model, some, schedule, direct_options, wanted);
+      for (const DirectedAction& made : directed) clips.push_back(made.clip);
+    } else {
+      clips = model.generate(some, schedule,
+                             {.with_prior = args.with_prior,
+                              .seed = args.seed,
+                              .first_sample = static_cast<std::uint32_t>(args.first_sample + first)});
+    }
     std::vector<motion::Motion> motions(count);
     motion::in_two_threads(count, [&](std::size_t i) {
       if (shows || rotates) motions[i] = motion_from_positions(clips[i], priors[first + i].reference);
     });
+    finish_directed(args, format, wanted, directed, clips, motions);
+    for (const DirectedAction& made : directed) errors.push_back(made.errors);
     if (rotates)
       for (motion::Motion& motion : motions) motion = body.put(motion);
     motion::in_two_threads(count, [&](std::size_t i) {
-      motions[i] = args.cleaning.apply(std::move(motions[i]), args.with_prior ? format.frames : 0);
+      if (directed.empty())
+        motions[i] = args.cleaning.apply(std::move(motions[i]), args.with_prior ? format.frames : 0);
       write_action_clip(files[first + i], clips[i], motions[i], args.rate,
                         body.unit_metres(format.space.unit_metres), body.character());
     });
@@ -198,6 +252,10 @@ int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const
                                     : format.frames;
       shown.push_back({fmt::format("{} ({})", args.schedule, priors[first + i].from),
                        for_page(motions[i], args.rate), given});
+      if (!directed.empty() && !args.retargeting.on()) {
+        const double begin = args.with_prior ? static_cast<double>(format.frames - 1) / format.rate : 0;
+        shown.back().marks = marks_of(wanted.constraints, motions[i], 0, begin);
+      }
     }
   }
   std::vector<std::vector<std::string>> rows;
@@ -210,10 +268,11 @@ int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const
              args.with_prior ? fmt::format("{}, then ", counted(format.frames, "given frame")) : "", made,
              duration(static_cast<double>(made) / format.rate));
   fmt::print("space: {}\n", describe(format.space));
+  const bool met = errors.empty() || print_constraint_errors(errors, motion::body_unit(format.skeleton()));
   if (!args.attention_map.empty()) draw_attention(args, model, priors, first_label);
   if (!args.html.empty()) show_page(args.html, shown, "generated by " + file.string());
   if (!args.png.empty()) show_strip(args.png, shown);
-  return 0;
+  return met ? 0 : exit_not_met;
 }
 
 }  // namespace motiongan::command

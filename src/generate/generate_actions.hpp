@@ -1,5 +1,6 @@
 // motiongan generate for class-conditioned models.
 #pragma once
+#include "generate/directing.hpp"
 #include "shared/action_data.hpp"
 #include "shared/cleaning.hpp"
 #include "shared/retargeting.hpp"
@@ -21,6 +22,7 @@ struct ActionGenerateArgs {
   std::uint64_t seed = 1;
   double rate = 0;
   Cleaning cleaning;
+  Directing directing;
   Weights weights;
 };
 

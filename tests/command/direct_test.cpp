@@ -121,6 +121,51 @@ TEST_CASE("generate meets what it is asked for, exactly if asked, and says how w
   }
 }
 
+TEST_CASE("models of classes are directed: times count from the end of the given second") {
+  const TestFolder folder;
+  REQUIRE(call("train attention --procedural 51 --save run --iterations 2 --frames 8 --rate 10 --hidden 8 "
+               "--batch 4 --noise 4 --classes walk,run")
+              .status == 0);
+  write_file("path.csv", "x,z,time\n0,0,0\n10,60,1\n10,130,2\n");
+  const std::string path = "generate run --class walk --path path.csv --exact --count 2";
+  const Said said = call(path + " --out p --html p.html" + few);  // 4: off the path between its points
+  CHECK_MESSAGE((said.status == 0 || said.status == 4), said.text);
+  CHECK(said.has("8 given frames, then 32 generated frames"));
+  CHECK(said.has("path of 3 points"));
+  CHECK(bytes_of("p.html").find("\"path\":[") != std::string::npos);
+  const Motion made = read("p/walk_001.bvh");
+  CHECK(made.frames == 40);
+  const double leg = body_unit(made.skeleton);
+  const auto root_at = [](const Motion& m, std::size_t frame) { return world_pose(m, frame, 0); };
+  const auto far = [&](const WorldPose& p, double x, double z) { return std::hypot(p.x - x, p.z - z) / leg; };
+  CHECK(far(root_at(made, 7), 0, 0) < 1e-3);
+  CHECK(far(root_at(made, 7 + 20), 10, 130) < 1e-3);
+  // Without the given second, times are those of the file but for a frame; reruns are equal.
+  REQUIRE(call(path + " --no-prior --out q" + few).status == said.status);
+  CHECK(far(root_at(read("q/walk_001.bvh"), 19), 10, 130) < 1e-3);
+  REQUIRE(call(path + " --out r" + few).status == said.status);
+  CHECK(bytes_of("p/walk_001.bvh") == bytes_of("r/walk_001.bvh"));
+
+  const Said more = call(
+      "generate run --class walk:1s,run:1s --keyframe 1.5:p/walk_000.bvh@2 --loop 2 --clean feet --out k" +
+      std::string(few));
+  CHECK_MESSAGE((more.status == 0 || more.status == 4), more.text);
+  CHECK(more.has("pose at 1.5 s"));
+  CHECK(more.has("loop"));
+  CHECK(fs::exists("k/walk-run_000.bvh"));
+  CHECK(call("generate run --class walk --seconds 2 --hand left@1:0,9999,0 --out n --format csv" +
+             std::string(few))
+            .status == 4);
+  CHECK(fs::exists("n/walk_000.csv"));
+  const auto refused = [](const std::string& arguments, const std::string& why) {
+    const Said no = call("generate run --class walk --out x " + arguments);
+    CHECK(no.status != 0);
+    CHECK_MESSAGE(no.has(why), no.text);
+  };
+  refused("--loop 9 --seconds 2", "outside of the motion, which is from 0 to 2 s");
+  refused("--joint Hed@1:0,0,0", "nearest: Head");
+}
+
 TEST_CASE("inbetween fills a gap, for models of either kind, and leaves the clips alone") {
   const TestFolder folder;
   REQUIRE(call("synth clips --clips 6 --seconds 5").status == 0);

@@ -3,42 +3,16 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "motiongan/core/error.hpp"
-#include "motiongan/data/motion_format.hpp"
+#include "motiongan/direct/directed_body.hpp"
 #include "motiongan/direct/path.hpp"
-#include "motiongan/direct/world_pose.hpp"
 
 namespace motiongan {
-
-/// The largest speed of the root over the ground that the training range of a format allows for, in its unit
-/// per second; nothing if the range is unknown. With places relative to a window's start it is the mean speed
-/// of a whole window.
-inline std::optional<double> fastest(const motion::MotionFormat& format) {
-  if (format.low.empty() || !format.layout.root_position()) return {};
-  double square = 0;
-  const auto& kept = format.normalizer.kept();
-  for (const std::size_t axis : {0, 2}) {
-    const std::size_t dim = format.layout.position_dim() + axis;
-    const auto at = std::lower_bound(kept.begin(), kept.end(), dim);
-    if (at == kept.end() || *at != dim) continue;
-    const auto k = static_cast<std::size_t>(at - kept.begin());
-    const auto value = [&](double normalised) {
-      return std::abs(format.normalizer.mean()[dim] + normalised * format.normalizer.std()[dim]);
-    };
-    const double most = std::max(value(format.low[k]), value(format.high[k]));
-    square += most * most;
-  }
-  if (square <= 0) return {};
-  const double frames = format.layout.has_steps() ? 1 : static_cast<double>(format.frames - 1);
-  return std::sqrt(square) * format.rate / frames;
-}
 
 /// The index of a joint by name; case does not matter. Throws Error, naming those that are most like it.
 inline std::size_t find_joint(const motion::Skeleton& skeleton, const std::string& name) {
@@ -72,28 +46,27 @@ namespace detail {
 /// Checks the constraints of one motion.
 class ConstraintCheck {
  public:
-  ConstraintCheck(const motion::MotionFormat& format, const motion::RootTrack& start, double seconds)
-      : format_(format), start_(start), seconds_(seconds), leg_(motion::body_unit(format.skeleton())) {
-    if (const std::optional<double> most = fastest(format)) most_ = *most;
-  }
+  ConstraintCheck(const DirectedBody& body, const motion::RootTrack& start, double seconds)
+      : body_(body), start_(start), seconds_(seconds), leg_(motion::body_unit(body.skeleton)) {}
 
   void operator()(const PoseConstraint& c) const {
     require(c.pose.frames > 0, "the pose at ", c.time, " s has no frames");
-    format_.require_skeleton(c.pose.skeleton, concat("the pose at ", c.time, " s"));
+    motion::require_same_joints(body_.skeleton, c.pose.skeleton, concat("the pose at ", c.time, " s"));
     for (const std::size_t j : c.joints) check_joint(j);
     check_time("a pose", c.time);
     if (!c.placed) return;
-    const WorldPose pose = world_pose(c.pose, 0, format_.layout.root());
+    const WorldPose pose = body_.read(c.pose, 0);
     check_way("the pose", pose.x, pose.z, c.time, 0);
   }
 
   void operator()(const JointConstraint& c) const {
     check_joint(c.joint);
-    const std::string& name = format_.skeleton().joints[c.joint].name;
+    const std::string& name = body_.skeleton.joints[c.joint].name;
     check_span(name, c.from, c.to);
     require(c.position || c.rotation, name, " has neither a position nor a rotation to be met");
-    require(!c.rotation || c.joint != format_.layout.root() || format_.layout.has_yaw(),
-            "the rotation of the root ", name,
+    require(!c.rotation || body_.rotates, "the rotation of ", name,
+            " cannot be given for a model of positions; give its place, or a pose");
+    require(!c.rotation || c.joint != body_.root || body_.root_turns, "the rotation of the root ", name,
             " cannot be given for a model of --root-rotation expmap; give a "
             "whole pose");
     if (!c.position) return;
@@ -114,24 +87,24 @@ class ConstraintCheck {
   void operator()(const LoopConstraint& c) const {
     const double seconds = c.seconds > 0 ? c.seconds : seconds_;
     check_time("a loop", seconds);
-    require(frame_at(seconds, format_.rate) >= 2, "a loop of ", seconds, " s is shorter than two frames, ",
-            2 / format_.rate, " s");
+    require(frame_at(seconds, body_.rate) >= 2, "a loop of ", seconds, " s is shorter than two frames, ",
+            2 / body_.rate, " s");
   }
 
   void operator()(const ContactConstraint& c) const {
     check_joint(c.joint);
-    check_span(format_.skeleton().joints[c.joint].name, c.from, c.to);
-    require(frame_at(c.to, format_.rate) > frame_at(c.from, format_.rate), "a foot that stands from ", c.from,
-            " to ", c.to, " s stands for less than a frame, ", 1 / format_.rate, " s");
+    check_span(body_.skeleton.joints[c.joint].name, c.from, c.to);
+    require(frame_at(c.to, body_.rate) > frame_at(c.from, body_.rate), "a foot that stands from ", c.from,
+            " to ", c.to, " s stands for less than a frame, ", 1 / body_.rate, " s");
   }
 
  private:
   void check_joint(std::size_t joint) const {
-    require(joint < format_.skeleton().size(), "joint ", joint, " is not one of the skeleton's ",
-            format_.skeleton().size(), " joints");
+    require(joint < body_.skeleton.size(), "joint ", joint, " is not one of the skeleton's ",
+            body_.skeleton.size(), " joints");
   }
   void check_time(const std::string& what, double time) const {
-    require(time >= 0 && time <= seconds_ + 0.5 / format_.rate, what, " at ", time,
+    require(time >= 0 && time <= seconds_ + 0.5 / body_.rate, what, " at ", time,
             " s is outside of the motion, which is from 0 to ", seconds_, " s; make it longer (--frames)");
   }
   void check_span(const std::string& what, double from, double to) const {
@@ -145,17 +118,17 @@ class ConstraintCheck {
     if (far > 0.5 * leg_) check_speed(concat("from the start to ", what), far, time);
   }
   void check_speed(const std::string& what, double way, double took) const {
-    if (most_ <= 0 || way <= 1.5 * most_ * took) return;
+    if (!body_.fastest || way <= 1.5 * *body_.fastest * took) return;
     throw Error("it is ", way / leg_, " leg lengths ", what, " in ", took, " s, ",
                 took > 0 ? concat(way / leg_ / took, " a second") : std::string("at once"),
-                "; the fastest of the training motion is ", most_ / leg_,
+                "; the fastest of the training motion is ", *body_.fastest / leg_,
                 " a second. Give more time, or a nearer "
                 "place");
   }
 
-  const motion::MotionFormat& format_;
+  const DirectedBody& body_;
   motion::RootTrack start_;
-  double seconds_, leg_, most_ = 0;
+  double seconds_, leg_;
 };
 
 }  // namespace detail
@@ -163,9 +136,9 @@ class ConstraintCheck {
 /// Throws Error for constraints that cannot be meant, for a motion of `seconds` that begins at `start`: times
 /// outside of it, joints that do not exist, poses of another skeleton, places that are further away than one
 /// and a half times the training motion's largest speed gets.
-inline void check_constraints(const motion::MotionFormat& format, const std::vector<Constraint>& constraints,
+inline void check_constraints(const DirectedBody& body, const std::vector<Constraint>& constraints,
                               const motion::RootTrack& start, double seconds) {
-  const detail::ConstraintCheck check(format, start, seconds);
+  const detail::ConstraintCheck check(body, start, seconds);
   for (const Constraint& c : constraints) std::visit(check, c);
   const auto paths = std::count_if(constraints.begin(), constraints.end(), [](const Constraint& c) {
     return std::holds_alternative<PathConstraint>(c);

@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
+#include "motiongan/direct/directed_body.hpp"
 #include "motiongan/direct/path.hpp"
-#include "motiongan/direct/world_pose.hpp"
 #include "motiongan/motion/feet.hpp"
+#include "motiongan/motion/position_clip.hpp"
 
 namespace motiongan {
 
@@ -42,36 +43,49 @@ namespace detail {
 /// Measures constraints on a motion.
 class ErrorMeter {
  public:
-  /// The motion is frames `first` and following of one of `seconds`.
-  ErrorMeter(const motion::Motion& motion, std::size_t root, std::size_t first, double seconds)
-      : motion_(motion), root_(root), first_(first), seconds_(seconds) {
-    unit_ = motion::body_unit(motion.skeleton);
-    for (std::size_t f = 0; f < motion.frames; ++f) poses_.push_back(world_pose(motion, f, root));
+  /// `poses` are those of frames `first` and following of a motion of `seconds`; given poses are read by
+  /// `read`. `rotations` is the motion itself, if it has any. What is passed must outlive the meter.
+  ErrorMeter(std::vector<WorldPose> poses, const motion::Skeleton& skeleton, double rate,
+             const PoseReader& read, std::size_t first, double seconds,
+             const motion::Motion* rotations = nullptr)
+      : poses_(std::move(poses)),
+        skeleton_(skeleton),
+        rate_(rate),
+        read_(read),
+        first_(first),
+        seconds_(seconds),
+        unit_(motion::body_unit(skeleton)),
+        rotations_(rotations) {}
+
+  std::vector<ConstraintError> operator()(const std::vector<Constraint>& constraints) const {
+    std::vector<ConstraintError> out;
+    for (const Constraint& c : constraints) out.push_back(std::visit(*this, c));
+    return out;
   }
 
   ConstraintError operator()(const PoseConstraint& c) const {
     ConstraintError out{.name = concat("pose at ", text(c.time))};
     if (c.pose.frames > 1) out.name = concat("poses from ", text(c.time));
-    const std::size_t first = frame_at(c.time, motion_.rate);
+    const std::size_t first = frame_at(c.time, rate_);
     for (std::size_t i = 0; i < c.pose.frames; ++i)
       if (const WorldPose* const own = pose_at(first + i))
-        take(out, apart(*own, world_pose(c.pose, i, root_), c.joints, c.placed), c.pose.frames);
+        take(out, apart(*own, read_(c.pose, i), c.joints, c.placed), c.pose.frames);
     out.tolerance = tolerance_of(c, c.tolerance);
     return out;
   }
 
   ConstraintError operator()(const JointConstraint& c) const {
     ConstraintError out{
-        .name = concat(motion_.skeleton.joints[c.joint].name, " at ", text(c.from), until(c.from, c.to))};
+        .name = concat(skeleton_.joints[c.joint].name, " at ", text(c.from), until(c.from, c.to))};
     const auto [first, last] = span(c.from, c.to);
     for (std::size_t f = first; f <= last; ++f) {
       const WorldPose* const own = pose_at(f);
       if (own == nullptr) continue;
       if (c.position)
         take(out, motion::length(motion::subtract(own->joint(c.joint), *c.position)), last + 1 - first);
-      if (c.rotation)
-        out.angle =
-            std::max(out.angle, motion::angle_between(motion_.rotation(f - first_, c.joint), *c.rotation));
+      if (c.rotation && rotations_ != nullptr)
+        out.angle = std::max(out.angle,
+                             motion::angle_between(rotations_->rotation(f - first_, c.joint), *c.rotation));
     }
     if (c.position) out.tolerance = tolerance_of(c, c.tolerance);
     if (c.rotation) out.angle_tolerance = c.angle_tolerance > 0 ? c.angle_tolerance : default_angle_tolerance;
@@ -85,7 +99,7 @@ class ErrorMeter {
     bool faces = false;
     for (std::size_t f = first; f <= last; ++f) {
       if (pose_at(f) == nullptr) continue;
-      const PathFrame at = path.at(static_cast<double>(f) / motion_.rate);
+      const PathFrame at = path.at(static_cast<double>(f) / rate_);
       const WorldPose& p = *pose_at(f);
       // Without times only the ends are places of a time.
       const bool placed = path.timed() || f == first || f == last;
@@ -101,16 +115,16 @@ class ErrorMeter {
 
   ConstraintError operator()(const LoopConstraint& c) const {
     ConstraintError out{.name = "loop"};
-    const WorldPose *const begin = pose_at(0), *const end = pose_at(frame_at(
-                                                   c.seconds > 0 ? c.seconds : seconds_, motion_.rate));
+    const WorldPose *const begin = pose_at(0), *const end = pose_at(
+                                                   frame_at(c.seconds > 0 ? c.seconds : seconds_, rate_));
     if (begin != nullptr && end != nullptr) take(out, apart(*end, *begin, {}, false), 1);
     out.tolerance = tolerance_of(c, c.tolerance);
     return out;
   }
 
   ConstraintError operator()(const ContactConstraint& c) const {
-    ConstraintError out{.name = concat(motion_.skeleton.joints[c.joint].name, " stands at ", text(c.from),
-                                       until(c.from, c.to))};
+    ConstraintError out{
+        .name = concat(skeleton_.joints[c.joint].name, " stands at ", text(c.from), until(c.from, c.to))};
     const auto [first, last] = span(c.from, c.to);
     motion::Vec3 mean{};
     std::vector<motion::Vec3> places;
@@ -132,7 +146,7 @@ class ErrorMeter {
     return given > 0 ? given : default_tolerance(c) * unit_;
   }
   std::pair<std::size_t, std::size_t> span(double from, double to) const {
-    return {frame_at(from, motion_.rate), frame_at(to, motion_.rate)};
+    return {frame_at(from, rate_), frame_at(to, rate_)};
   }
   static std::string text(double time) { return concat(std::round(time * 1000) / 1000, " s"); }
   static std::string until(double from, double to) { return to > from ? " to " + text(to) : std::string(); }
@@ -156,10 +170,13 @@ class ErrorMeter {
     return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(count, 1)));
   }
 
-  const motion::Motion& motion_;
-  std::size_t root_, first_;
-  double seconds_, unit_ = 1;
   std::vector<WorldPose> poses_;  // per frame
+  const motion::Skeleton& skeleton_;
+  double rate_;
+  const PoseReader& read_;
+  std::size_t first_;
+  double seconds_, unit_;
+  const motion::Motion* rotations_;
 };
 
 }  // namespace detail
@@ -173,10 +190,21 @@ inline std::vector<ConstraintError> constraint_errors(const motion::Motion& moti
                                                       std::optional<double> seconds = {}) {
   require(motion.frames > 0, "a motion without frames meets no constraint");
   const double whole = seconds.value_or(static_cast<double>(motion.frames - 1) / motion.rate);
-  const detail::ErrorMeter meter(motion, root, first, whole);
-  std::vector<ConstraintError> out;
-  for (const Constraint& c : constraints) out.push_back(std::visit(meter, c));
-  return out;
+  std::vector<WorldPose> poses;
+  for (std::size_t f = 0; f < motion.frames; ++f) poses.push_back(world_pose(motion, f, root));
+  const PoseReader read = read_by_rotation(root);
+  return detail::ErrorMeter(std::move(poses), motion.skeleton, motion.rate, read, first, whole,
+                            &motion)(constraints);
+}
+
+/// The same for a clip of positions and a model of that format; frame 0 of the clip is time 0.
+inline std::vector<ConstraintError> constraint_errors(const motion::PositionFormat& format,
+                                                      const motion::PositionClip& clip,
+                                                      const std::vector<Constraint>& constraints) {
+  require(clip.frames > 0, "a motion without frames meets no constraint");
+  const PoseReader read = read_by_places(format.layout);
+  return detail::ErrorMeter(world_poses(format.layout, clip.positions), clip.skeleton, clip.rate, read, 0,
+                            static_cast<double>(clip.frames - 1) / clip.rate)(constraints);
 }
 
 }  // namespace motiongan

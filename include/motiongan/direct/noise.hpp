@@ -6,10 +6,42 @@
 
 namespace motiongan {
 
+namespace detail {
+
+/// Vectors [vectors, k] that turn and keep the length that they were drawn with, so that a generator goes on
+/// seeing what it was trained on: in many dimensions normal vectors differ in direction, and hardly in
+/// length.
+class TurningVectors {
+ public:
+  TurningVectors() = default;
+  explicit TurningVectors(const Var& drawn)
+      : drawn_(drawn.detach()),
+        lengths_(sqrt(reshape(sum(square(drawn_), 1), {drawn_.dim(0), 1}) + 1e-12).detach()),
+        variable_(Var::leaf(drawn.value())) {}
+
+  /// For an optimizer, which changes their lengths too; that does not count.
+  Var& variable() { return variable_; }
+
+  Var value() const {
+    const Var length = sqrt(reshape(sum(square(variable_), 1), {variable_.dim(0), 1}) + 1e-12);
+    return variable_ * broadcast_to(lengths_ / length, variable_.shape());
+  }
+
+  /// How far they have turned, [1]: the sum over vectors of 1 - cosine.
+  Var turned_away() const {
+    const Var together = drawn_ * value() / broadcast_to(square(lengths_), drawn_.shape());
+    return affine(sum(together), -1, static_cast<double>(drawn_.dim(0)));
+  }
+
+ private:
+  Var drawn_, lengths_;  // [vectors, k], [vectors, 1]
+  Var variable_;
+};
+
+}  // namespace detail
+
 /// The noise of a batch of motions in one variable, [vectors, k]: for a CNN generator every vector of every
-/// level, for an RNN generator every frame's. A vector keeps the length that it was drawn with, so that the
-/// generator goes on seeing what it was trained on: in many dimensions normal vectors differ in direction,
-/// and hardly in length.
+/// level, for an RNN generator every frame's. Vectors keep the length that they were drawn with.
 class NoiseVariable {
  public:
   /// Draws it as Dvgan::generate does, for samples key.first_sample and following. With `given` frames
@@ -33,19 +65,15 @@ class NoiseVariable {
       level_frames_.push_back(z.dim(0));
       rows.push_back(reshape(z, {z.dim(0) * batch, k}));
     }
-    const Var drawn = concatenate(rows, 0);
-    drawn_ = drawn.detach();
-    lengths_ = sqrt(reshape(sum(square(drawn_), 1), {drawn_.dim(0), 1}) + 1e-12).detach();
-    variable_ = Var::leaf(drawn.value());
+    noise_ = detail::TurningVectors(concatenate(rows, 0));
   }
 
   /// For an optimizer.
-  std::vector<NamedParameter> parameters() { return {{"noise", &variable_}}; }
-  const Var& variable() const { return variable_; }
+  std::vector<NamedParameter> parameters() { return {{"noise", &noise_.variable()}}; }
 
   /// Normalised motion [frames, B, dof] of the noise as it is.
   Var motion() const {
-    const Var z = noise();
+    const Var z = noise_.value();
     const std::size_t k = z.dim(1);
     std::vector<Var> levels;
     for (std::size_t at = 0; const std::size_t frames : level_frames_) {
@@ -56,26 +84,16 @@ class NoiseVariable {
                                  : model_.cnn()(text_, levels, cut_);
   }
 
-  /// How far the noise has turned from where it was drawn, [1]: the sum over vectors of 1 - cosine.
-  Var turned_away() const {
-    const Var together = drawn_ * noise() / broadcast_to(square(lengths_), drawn_.shape());
-    return affine(sum(together), -1, static_cast<double>(drawn_.dim(0)));
-  }
+  /// How far the noise has turned from where it was drawn, [1].
+  Var turned_away() const { return noise_.turned_away(); }
 
  private:
-  /// The variable with the lengths that were drawn.
-  Var noise() const {
-    const Var length = sqrt(reshape(sum(square(variable_), 1), {variable_.dim(0), 1}) + 1e-12);
-    return variable_ * broadcast_to(lengths_ / length, variable_.shape());
-  }
-
   const Dvgan& model_;
   Sentences text_;
   Var given_;
   Indices cut_;
   std::vector<std::size_t> level_frames_;
-  Var drawn_, lengths_;  // [vectors, k], [vectors, 1]
-  Var variable_;
+  detail::TurningVectors noise_;
 };
 
 }  // namespace motiongan

@@ -2,12 +2,14 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
+#include <utility>
 #include <vector>
 
+#include "motiongan/direct/constraints.hpp"
+#include "motiongan/direct/directed_body.hpp"
 #include "motiongan/direct/path.hpp"
-#include "motiongan/direct/world_pose.hpp"
-#include "motiongan/networks/world_view.hpp"
 
 namespace motiongan {
 
@@ -57,18 +59,10 @@ class DirectObjective {
   /// For motions of `frames` frames, of which the first is frame `first` of the whole motion.
   DirectObjective(const Context& context, const motion::MotionFormat& format, std::size_t frames,
                   std::size_t batch, std::size_t first = 0)
-      : view_(context, format),
-        format_(format),
-        leg_(motion::body_unit(format.skeleton())),
-        joints_(format.skeleton().size()),
-        frames_(frames),
-        batch_(batch),
-        first_(first) {
-    const std::size_t poses = frames * batch;
-    places_ = {3 * joints_, poses}, bodies_ = {2 * joints_, poses}, rotations_ = {3 * joints_, poses};
-    headings_ = {2, poses}, ways_ = {2, poses};
-    ways_x_.resize(2 * poses), ways_z_.resize(2 * poses), steps_ = {3 * joints_, poses - batch};
-  }
+      : DirectObjective(WorldView(context, format), directed_body(format), frames, batch, first) {}
+  DirectObjective(const Context& context, const motion::PositionFormat& format, std::size_t frames,
+                  std::size_t batch, std::size_t first = 0)
+      : DirectObjective(PlaceView(context, format), directed_body(format), frames, batch, first) {}
 
   /// Adds the constraints of a sample, as far as they fall into these frames. `anchor` is where the root is
   /// in the first of them, `seconds` the length of the whole motion.
@@ -102,11 +96,11 @@ class DirectObjective {
   /// legs if a twentieth of a leg is allowed, and more or less otherwise.
   Var operator()(const Var& motion) const {
     const WorldRows world = view_(motion);
-    const std::size_t poses = frames_ * batch_, root = format_.layout.root();
+    const std::size_t poses = frames_ * batch_, root = own_.root;
     Var loss = zeros(motion.context(), {1});
     if (places_.used()) loss = places_.added(loss, concatenate({world.x, world.y, world.z}, 0));
     if (bodies_.used()) loss = bodies_.added(loss, concatenate({world.body.x, world.body.z}, 0));
-    loss = rotations_.added(loss, world.rotations);
+    if (rotations_.used()) loss = rotations_.added(loss, world.rotations);
     if (headings_.used()) loss = headings_.added(loss, concatenate({world.cosine, world.sine}, 0));
     if (ways_.used()) {
       const Var x = broadcast_to(slice(world.x, 0, root, 1), {2, poses}),
@@ -122,6 +116,22 @@ class DirectObjective {
   }
 
  private:
+  using View = std::function<WorldRows(const Var& motion)>;
+
+  DirectObjective(View view, DirectedBody body, std::size_t frames, std::size_t batch, std::size_t first)
+      : view_(std::move(view)),
+        own_(std::move(body)),
+        leg_(motion::body_unit(own_.skeleton)),
+        joints_(own_.skeleton.size()),
+        frames_(frames),
+        batch_(batch),
+        first_(first) {
+    const std::size_t poses = frames * batch;
+    places_ = {3 * joints_, poses}, bodies_ = {2 * joints_, poses}, rotations_ = {3 * joints_, poses};
+    headings_ = {2, poses}, ways_ = {2, poses};
+    ways_x_.resize(2 * poses), ways_z_.resize(2 * poses), steps_ = {3 * joints_, poses - batch};
+  }
+
   // Weights of what helps beside what is asked for.
   static constexpr double pace = 0.1,  // of the way along a path without times
       facing = 0.05,                   // of facing along it
@@ -155,12 +165,12 @@ class DirectObjective {
   }
 
   void take(const PoseConstraint& c) {
-    const std::size_t at = frame_at(c.time, format_.rate), root = format_.layout.root();
+    const std::size_t at = frame_at(c.time, own_.rate);
     const double count = static_cast<double>(c.joints.empty() ? joints_ : c.joints.size());
     const double weight = per_square_length(c) / count;
     for (std::size_t i = 0; i < c.pose.frames; ++i) {
       if (!inside(at + i)) continue;
-      const WorldPose pose = world_pose(c.pose, i, root);
+      const WorldPose pose = own_.read(c.pose, i);
       const auto hold = [&](std::size_t j) {
         if (c.placed) return place(j, at + i, pose.joint(j), weight);
         places_.add(joints_ + j, pose_of(at + i), weight, pose.body[j][1]);
@@ -174,12 +184,12 @@ class DirectObjective {
   }
 
   void take(const JointConstraint& c) {
-    const std::size_t last = frame_at(c.to, format_.rate), root = format_.layout.root();
-    for (std::size_t f = frame_at(c.from, format_.rate); f <= last; ++f) {
+    const std::size_t last = frame_at(c.to, own_.rate), root = own_.root;
+    for (std::size_t f = frame_at(c.from, own_.rate); f <= last; ++f) {
       if (!inside(f)) continue;
       if (c.position) place(c.joint, f, *c.position, per_square_length(c));
       if (!c.rotation) continue;
-      const bool turns = c.joint == root && format_.layout.has_yaw();
+      const bool turns = c.joint == root && own_.root_turns;
       const motion::Vec3 r =
           turns ? motion::heading_from_quat(*c.rotation) : motion::expmap_from_quat(*c.rotation);
       for (std::size_t axis = 0; axis < 3; ++axis)
@@ -192,10 +202,10 @@ class DirectObjective {
 
   void take(const PathConstraint& c) {
     const TimedPath path(c.points, seconds_);
-    const std::size_t last = frame_at(path.last_time(), format_.rate), poses = frames_ * batch_;
-    for (std::size_t f = frame_at(path.first_time(), format_.rate); f <= last; ++f) {
+    const std::size_t last = frame_at(path.last_time(), own_.rate), poses = frames_ * batch_;
+    for (std::size_t f = frame_at(path.first_time(), own_.rate); f <= last; ++f) {
       if (!inside(f)) continue;
-      const PathFrame at = path.at(static_cast<double>(f) / format_.rate);
+      const PathFrame at = path.at(static_cast<double>(f) / own_.rate);
       const motion::Vec3 p = local({at.x, 0, at.z});
       double x = at.along_x, z = at.along_z;
       motion::turn_ground(x, z, -anchor_.yaw);
@@ -211,7 +221,7 @@ class DirectObjective {
   }
 
   void take(const LoopConstraint& c) {
-    const std::size_t last = frame_at(c.seconds > 0 ? c.seconds : seconds_, format_.rate);
+    const std::size_t last = frame_at(c.seconds > 0 ? c.seconds : seconds_, own_.rate);
     if (first_ > 0 || last >= frames_ || last < 2) return;
     std::vector<double>& weights = loops_[last].weights;
     weights.resize(batch_, 0);
@@ -219,16 +229,14 @@ class DirectObjective {
   }
 
   void take(const ContactConstraint& c) {
-    const std::size_t last = frame_at(c.to, format_.rate);
-    const std::vector<std::size_t> feet = motion::has_feet(format_.skeleton())
-                                              ? motion::find_feet(format_.skeleton())
-                                              : std::vector<std::size_t>();
-    const bool on_floor =
-        format_.layout.floor() && std::find(feet.begin(), feet.end(), c.joint) != feet.end();
+    const std::size_t last = frame_at(c.to, own_.rate);
+    const std::vector<std::size_t> feet =
+        motion::has_feet(own_.skeleton) ? motion::find_feet(own_.skeleton) : std::vector<std::size_t>();
+    const bool on_floor = own_.floor && std::find(feet.begin(), feet.end(), c.joint) != feet.end();
     const double weight = per_square_length(c);
-    for (std::size_t f = frame_at(c.from, format_.rate); f <= last; ++f) {
+    for (std::size_t f = frame_at(c.from, own_.rate); f <= last; ++f) {
       if (!inside(f)) continue;
-      if (on_floor) places_.add(joints_ + c.joint, pose_of(f), weight, *format_.layout.floor());
+      if (on_floor) places_.add(joints_ + c.joint, pose_of(f), weight, *own_.floor);
       if (f == last || !inside(f + 1)) continue;
       for (std::size_t axis = 0; axis < 3; ++axis)
         steps_.add(axis * joints_ + c.joint, pose_of(f), standing * weight, 0);
@@ -248,7 +256,7 @@ class DirectObjective {
   /// Of the pose at a loop's end beside the first, and of the movements there. `root_weight` [1, B] is 0 for
   /// samples without this loop.
   Var loop_loss(const WorldRows& world, std::size_t last, const Var& root_weight) const {
-    const std::size_t root = format_.layout.root();
+    const std::size_t root = own_.root;
     const auto at = [&](const Var& v, std::size_t frame) { return slice(v, 1, frame * batch_, batch_); };
     const auto squared = [&](const Var& v) { return sum(square(broadcast_to(root_weight, v.shape()) * v)); };
     const Var body = concatenate({world.body.x, world.y, world.body.z}, 0);
@@ -269,8 +277,8 @@ class DirectObjective {
     return weighted_sum(loss, 1, squared(relu(activity_ - activity(world))), liveliness * leg_ * leg_);
   }
 
-  WorldView view_;
-  motion::MotionFormat format_;
+  View view_;
+  DirectedBody own_;
   double leg_;
   std::size_t joints_, frames_, batch_, first_;
   motion::RootTrack anchor_;  // of the sample that is being added

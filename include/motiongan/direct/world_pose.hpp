@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "motiongan/data/position_layout.hpp"
 #include "motiongan/motion/heading.hpp"
 #include "motiongan/motion/support.hpp"
 
@@ -29,6 +30,23 @@ inline WorldPose world_pose(const motion::Motion& motion, std::size_t frame, std
       motion::joints_about_root(motion.skeleton, root, own(motion.rotations), own(motion.positions)),
       place[0], place[2], motion::heading_from_quat(motion.rotation(frame, root))[1]};
   for (motion::Vec3& p : out.body) p[1] += place[1];
+  return out;
+}
+
+/// All frames of positions [frames, joints], whose root is joint 0; the heading is that of the layout.
+inline std::vector<WorldPose> world_poses(const motion::PositionLayout& layout,
+                                          std::span<const motion::Vec3> positions) {
+  std::vector<WorldPose> out;
+  const std::size_t joints = layout.skeleton().size();
+  for (std::size_t f = 0; const motion::RootTrack& at : layout.places(positions)) {
+    WorldPose pose{{}, at.x, at.z, at.yaw};
+    for (const motion::Vec3& p : positions.subspan(f++ * joints, joints)) {
+      motion::Vec3 own{p[0] - at.x, p[1], p[2] - at.z};
+      motion::turn_ground(own[0], own[2], -at.yaw);
+      pose.body.push_back(own);
+    }
+    out.push_back(std::move(pose));
+  }
   return out;
 }
 

@@ -16,6 +16,27 @@ struct WorldRows {
   Var rotations;     ///< exponential maps as the pose layout has them, [3 * joints, poses]
 };
 
+namespace detail {
+
+/// Sums over the frames of changes [1, poses - batch], from 0 in the first frame: [1, poses].
+inline Var summed(const Var& changes, std::size_t frames, std::size_t batch) {
+  std::vector<double> below(frames * (frames - 1), 0);
+  for (std::size_t f = 1; f < frames; ++f)
+    for (std::size_t g = 0; g < f; ++g) below[f * (frames - 1) + g] = 1;
+  const Var triangle = Var::constant(Tensor::from(changes.context(), {frames, frames - 1}, below));
+  return reshape(matmul(triangle, reshape(changes, {frames - 1, batch})), {1, frames * batch});
+}
+inline Ground summed(const Ground& steps, std::size_t frames, std::size_t batch) {
+  return {summed(steps.x, frames, batch), summed(steps.z, frames, batch)};
+}
+
+/// The first frame of a row [1, poses], repeated `frames` times.
+inline Var first_frame(const Var& row, std::size_t frames, std::size_t batch) {
+  return reshape(broadcast_to(slice(row, 1, 0, batch), {frames, batch}), {1, frames * batch});
+}
+
+}  // namespace detail
+
 /// Follows the root over the ground. For all forms of the root's rotation.
 class WorldView {
  public:
@@ -34,18 +55,18 @@ class WorldView {
       out.body = turned(out.body, out.cosine, -out.sine);
       // Everything is turned so that the first frame faces +z.
       const auto first = [&](const Var& row, std::size_t times) {
-        return reshape(broadcast_to(slice(row, 1, 0, batch), {times, batch}), {1, times * batch});
+        return detail::first_frame(row, times, batch);
       };
-      root = summed(turned(rows.step, first(out.cosine, frames - 1), -first(out.sine, frames - 1)), frames,
-                    batch);
+      root = detail::summed(turned(rows.step, first(out.cosine, frames - 1), -first(out.sine, frames - 1)),
+                            frames, batch);
       const Var cosine = first(out.cosine, frames), sine = first(out.sine, frames);
       const Var faces = cosine * out.cosine + sine * out.sine;
       out.sine = cosine * out.sine - sine * out.cosine;
       out.cosine = faces;
     } else {
-      const Var yaw = summed(rows.turn, frames, batch);
+      const Var yaw = detail::summed(rows.turn, frames, batch);
       out.cosine = cos(yaw), out.sine = sin(yaw);
-      root = summed(
+      root = detail::summed(
           turned(rows.step, slice(out.cosine, 1, 0, poses - batch), slice(out.sine, 1, 0, poses - batch)),
           frames, batch);
     }
@@ -55,18 +76,6 @@ class WorldView {
   }
 
  private:
-  /// Sums over the frames of changes [1, poses - batch], from 0 in the first frame: [1, poses].
-  static Var summed(const Var& changes, std::size_t frames, std::size_t batch) {
-    std::vector<double> below(frames * (frames - 1), 0);
-    for (std::size_t f = 1; f < frames; ++f)
-      for (std::size_t g = 0; g < f; ++g) below[f * (frames - 1) + g] = 1;
-    const Var triangle = Var::constant(Tensor::from(changes.context(), {frames, frames - 1}, below));
-    return reshape(matmul(triangle, reshape(changes, {frames - 1, batch})), {1, frames * batch});
-  }
-  static Ground summed(const Ground& steps, std::size_t frames, std::size_t batch) {
-    return {summed(steps.x, frames, batch), summed(steps.z, frames, batch)};
-  }
-
   /// The heading of an exponential map e, as motion::heading_from_quat: half of it has the cosine and sine of
   /// cos(|e| / 2) and e_y sin(|e| / 2) / |e|, up to a common factor.
   void face_by_rotation(const BodyRows& rows, WorldRows& out) const {

@@ -109,6 +109,25 @@ inline double accuracy_of(const Tensor& logits, std::span<const std::size_t> lab
   return static_cast<double>(right) / static_cast<double>(labels.size());
 }
 
+namespace detail {
+
+/// The sizes of the critic that trains a model.
+inline AttentionCriticOptions critic_sizes(const ActionGan& model, const Bones& bones,
+                                           const AttentionTrainOptions& options) {
+  return {.dof = model.format().dof() + (options.critic_directions ? 3 * bones.count() : 0),
+          .hidden = model.options().hidden,
+          .classes = options.critic_classes ? model.format().classes.size() : 0,
+          .attention = model.options().attention};
+}
+
+/// What the critic sees of a motion: its values, and if it sees directions, the bones' unit vectors, scaled
+/// to vary about as much.
+inline Var critic_view(const Bones& bones, const AttentionTrainOptions& options, const Var& motion) {
+  return options.critic_directions ? concatenate({motion, affine(bones.directions(motion), 2)}, 2) : motion;
+}
+
+}  // namespace detail
+
 /// Trains the attention generator of an ActionGan. Critic, classifier and generator steps can also be called
 /// one by one.
 class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, AttentionLosses> {
@@ -119,10 +138,7 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
         windows_(model.context(), data, data.train, options.balanced),
         bones_(model.context(), model.format()),
         critic_(Initializer(model.context(), model.options().seed + 1),
-                {.dof = model.format().dof() + (options.critic_directions ? 3 * bones_.count() : 0),
-                 .hidden = model.options().hidden,
-                 .classes = options.critic_classes ? model.format().classes.size() : 0,
-                 .attention = model.options().attention}),
+                detail::critic_sizes(model, bones_, options)),
         classifier_(Initializer(model.context(), model.options().seed + 2),
                     {.dof = model.format().dof(),
                      .classes = model.format().classes.size(),
@@ -277,12 +293,7 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
     return key;
   }
 
-  /// What the critic sees of a motion: its values, and if it sees directions, the bones' unit vectors, scaled
-  /// to vary about as much.
-  Var seen(const Var& motion) const {
-    return options_.critic_directions ? concatenate({motion, affine(bones_.directions(motion), 2)}, 2)
-                                      : motion;
-  }
+  Var seen(const Var& motion) const { return detail::critic_view(bones_, options_, motion); }
 
   Var score(const Var& motion, const Var& classes) const {
     return options_.critic_classes ? critic_(motion, classes) : critic_(motion);
