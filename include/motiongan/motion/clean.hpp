@@ -45,34 +45,55 @@ inline void check(const CleanOptions& o) {
           o.blend, " and ", o.airborne, "; expected values above 0, each second one no less than the first");
 }
 
+namespace clean_detail {
+
+/// Over the ground, per frame: the way over three frames, so that trembling does not count, times
+/// `per_frame`.
+inline std::vector<double> ground_speeds(const std::vector<Vec3>& places, double per_frame) {
+  std::vector<double> out;
+  for (std::size_t f = 0; f < places.size(); ++f) {
+    const std::size_t before = f > 0 ? f - 1 : 0, after = std::min(f + 1, places.size() - 1);
+    const double frames = static_cast<double>(std::max<std::size_t>(after - before, 1));
+    out.push_back(std::hypot(places[after][0] - places[before][0], places[after][2] - places[before][2]) /
+                  frames * per_frame);
+  }
+  return out;
+}
+
+}  // namespace clean_detail
+
 /// Frames first .. last - 1 in which a foot stands.
 struct FootContact {
   std::size_t first = 0, last = 0;
 };
 
-/// When a foot stands: it is low and slow, with hysteresis, for at least the shortest time. `places` are its
-/// positions in the world, one per frame, in a unit of 1 / `metre` metres.
+/// When a foot stands: it is low and slow, with hysteresis, for at least the shortest time. While it lands
+/// and leaves it does not: that is where, at either end, it is much faster or higher than on the whole.
+/// `places` are its positions in the world, one per frame, in a unit of 1 / `metre` metres.
 inline std::vector<FootContact> foot_contacts(const std::vector<Vec3>& places, double rate, double floor,
                                               double metre, const CleanOptions& options = {}) {
   std::vector<FootContact> out;
-  const std::size_t frames = places.size();
-  const auto at = [&](std::size_t i) -> const Vec3& { return places[std::min(i, frames - 1)]; };
+  const std::vector<double> speeds = clean_detail::ground_speeds(places, rate / metre);
+  const auto height = [&](std::size_t f) { return (places[f][1] - floor) / metre; };
   bool stands = false;
-  for (std::size_t f = 0; f < frames; ++f) {
-    // Over three frames, so that trembling does not count as speed.
-    const std::size_t before = f > 0 ? f - 1 : 0, after = std::min(f + 1, frames - 1);
-    const double time = static_cast<double>(std::max<std::size_t>(after - before, 1)) / rate;
-    const double speed =
-                     std::hypot(at(after)[0] - at(before)[0], at(after)[2] - at(before)[2]) / time / metre,
-                 height = (at(f)[1] - floor) / metre;
-    const bool now = height < (stands ? options.leave_height : options.touch_height) &&
-                     speed < (stands ? options.leave_speed : options.touch_speed);
+  for (std::size_t f = 0; f < places.size(); ++f) {
+    const bool now = height(f) < (stands ? options.leave_height : options.touch_height) &&
+                     speeds[f] < (stands ? options.leave_speed : options.touch_speed);
     if (now && !stands) out.push_back({f, f});
     if (now) out.back().last = f + 1;
     stands = now;
   }
+  for (FootContact& c : out) {
+    std::vector<double> speed, high;
+    for (std::size_t f = c.first; f < c.last; ++f) speed.push_back(speeds[f]), high.push_back(height(f));
+    const double fastest = 1.5 * percentile(std::move(speed), 0.5) + 0.3,
+                 highest = percentile(std::move(high), 0.5) + 0.03;
+    const auto moves = [&](std::size_t f) { return speeds[f] > fastest || height(f) > highest; };
+    while (c.last > c.first && moves(c.last - 1)) --c.last;
+    while (c.last > c.first && moves(c.first)) ++c.first;
+  }
   std::erase_if(out, [&](const FootContact& c) {
-    return static_cast<double>(c.last - c.first) < options.shortest * rate;
+    return c.last == c.first || static_cast<double>(c.last - c.first) < options.shortest * rate;
   });
   return out;
 }
@@ -191,10 +212,16 @@ class Cleaner {
   std::vector<Vec3> holding(const std::vector<Vec3>& foot) const {
     const std::vector<FootContact> contacts = foot_contacts(foot, motion_.rate, floor_, metre_, options_);
     std::vector<Vec3> out(motion_.frames, Vec3{});
+    const std::vector<double> speeds = ground_speeds(foot, motion_.rate / metre_);
     for (const FootContact& c : contacts) {
-      Vec3 middle{};
-      for (std::size_t f = c.first; f < c.last; ++f)
-        middle = add(middle, scale(foot[f], 1 / static_cast<double>(c.last - c.first)));
+      Vec3 middle{};  // where it is slow counts more
+      double weights = 0;
+      for (std::size_t f = c.first; f < c.last; ++f) {
+        const double slow = 1 / (speeds[f] + 0.1), weight = slow * slow;
+        middle = add(middle, scale(foot[f], weight));
+        weights += weight;
+      }
+      middle = scale(middle, 1 / weights);
       middle[1] = std::max(middle[1], floor_);
       for (std::size_t f = c.first; f < c.last; ++f) out[f] = subtract(middle, foot[f]);
     }
