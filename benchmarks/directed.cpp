@@ -88,7 +88,8 @@ class Study {
     std::vector<Motion> motions;
     for (std::size_t i = 0; i < made.size(); ++i) {
       const Motion truth = slice(truths[i], side, between), mine = slice(made[i].motion, side, between),
-                   straight = interpolated(truths[i], side, between);
+                   straight = straight_way(slice(truths[i], side - 1, 1), slice(truths[i], side + between, 1),
+                                           between);
       error += made[i].error.mean / leg_, met += made[i].error.met() ? 1 : 0;
       iterations += static_cast<double>(made[i].iterations);
       ours += apart(mine, truth), slerp += apart(straight, truth);
@@ -168,20 +169,6 @@ class Study {
     std::printf("%s: %.0f ms and %zu iterations alone; %.0f ms a motion and %zu iterations, 16 together\n",
                 name, 1e3 * one, alone, 1e3 * sixteen / 16, together);
     return direct(model_, tasks, options);
-  }
-
-  /// The frames between, each joint turned evenly from one end to the other.
-  static Motion interpolated(const Motion& whole, std::size_t first, std::size_t count) {
-    Motion out = slice(whole, first, count);
-    for (std::size_t f = 0; f < count; ++f) {
-      const double t = static_cast<double>(f + 1) / static_cast<double>(count + 1);
-      for (std::size_t j = 0; j < whole.skeleton.size(); ++j) {
-        out.rotation(f, j) = motion::slerp(whole.rotation(first - 1, j), whole.rotation(first + count, j), t);
-        out.position(f, j) = motion::add(motion::scale(whole.position(first - 1, j), 1 - t),
-                                         motion::scale(whole.position(first + count, j), t));
-      }
-    }
-    return out;
   }
 
   /// The mean distance of the joints, in legs.

@@ -101,6 +101,21 @@ TEST_CASE("reruns give the same bits, other seeds other motion, and weights stay
   }
 }
 
+TEST_CASE("the straight way turns evenly from one pose to the other") {
+  Dvgan model = model_of(GeneratorKind::cnn);
+  const Motion made = own(model, 0), from = slice(made, 0, 1), to = slice(made, 5, 1),
+               way = straight_way(from, to, 3);
+  REQUIRE(way.frames == 3);
+  for (std::size_t j = 0; j < made.skeleton.size(); ++j) {
+    const double all = motion::angle_between(from.rotation(0, j), to.rotation(0, j));
+    for (std::size_t f = 0; f < 3; ++f)
+      CHECK(motion::angle_between(from.rotation(0, j), way.rotation(f, j)) ==
+            doctest::Approx(all * static_cast<double>(f + 1) / 4).epsilon(1e-6));
+  }
+  const motion::Vec3 middle = motion::scale(motion::add(from.position(0, 0), to.position(0, 0)), 0.5);
+  CHECK(motion::length(motion::subtract(way.position(1, 0), middle)) < 1e-9 * leg(model));
+}
+
 TEST_CASE("what cannot be met reports its error; exact corrections meet it") {
   Dvgan model = model_of(GeneratorKind::cnn);
   // The hand is where no arm gets to, but not too far for the check.

@@ -26,6 +26,23 @@ struct InBetween {
   std::size_t iterations = 0;
 };
 
+/// The frames between two poses, each the first frame of its motion, if every joint turns evenly from one to
+/// the other (slerp) and the root moves evenly.
+inline motion::Motion straight_way(const motion::Motion& from, const motion::Motion& to, std::size_t frames) {
+  motion::Motion out = slice(from, 0, 1);
+  out.frames = frames;
+  out.rotations.clear(), out.positions.clear();
+  for (std::size_t f = 0; f < frames; ++f) {
+    const double t = static_cast<double>(f + 1) / static_cast<double>(frames + 1);
+    for (std::size_t j = 0; j < from.skeleton.size(); ++j) {
+      out.rotations.push_back(motion::slerp(from.rotation(0, j), to.rotation(0, j), t));
+      out.positions.push_back(
+          motion::add(motion::scale(from.position(0, j), 1 - t), motion::scale(to.position(0, j), t)));
+    }
+  }
+  return out;
+}
+
 namespace detail {
 
 /// Frames on either side of a gap that the motion between has to fit.
@@ -49,8 +66,8 @@ inline motion::Motion moved_to(motion::Motion after, const motion::Motion& made,
 }  // namespace detail
 
 /// Fills gaps of equal length, with the noise chosen so that the motion leads from one clip into the other,
-/// and at last corrected so that the clips stay as they are. Bodies are those of the motions before. Throws
-/// Error as direct() does, and for a gap without frames.
+/// not far from the straight way, and at last corrected so that the clips stay as they are. Bodies are those
+/// of the motions before. Throws Error as direct() does, and for a gap without frames.
 inline std::vector<InBetween> fill_gaps(Dvgan& model, const std::vector<Gap>& gaps, DirectOptions options) {
   const motion::MotionFormat& format = model.format();
   const std::size_t root = format.layout.root();
@@ -73,6 +90,10 @@ inline std::vector<InBetween> fill_gaps(Dvgan& model, const std::vector<Gap>& ga
             .points = {{a.x, a.z, static_cast<double>(before - 1) / format.rate}, {b.x, b.z, time}},
             .weight = 0.1});
     }
+    task.guides.push_back(
+        PoseConstraint{.time = static_cast<double>(before) / format.rate,
+                       .pose = straight_way(slice(task.given, before - 1, 1), slice(end.pose, 0, 1), between),
+                       .weight = 0.01});
     task.constraints.push_back(std::move(end));
     tasks.push_back(std::move(task));
   }
