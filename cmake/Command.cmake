@@ -5,6 +5,7 @@ find_package(CLI11 QUIET)
 find_package(fmt QUIET)
 find_package(PNG QUIET)
 find_package(assimp QUIET)   # reads and writes FBX
+find_package(MPI QUIET COMPONENTS CXX)   # trains on several machines
 if(NOT CLI11_FOUND)
   part_left_out("the motiongan command and its tests are" libcli11-dev)
 elseif(NOT fmt_FOUND)
@@ -30,6 +31,15 @@ elseif(sources)
     target_link_libraries(motiongan-verbs PUBLIC assimp::assimp)
   else()
     part_left_out("FBX files of the command are" libassimp-dev)
+  endif()
+
+  set_source_files_properties("${PROJECT_SOURCE_DIR}/src/train/ranks.cpp" PROPERTIES
+    COMPILE_DEFINITIONS "MOTIONGAN_WITH_MPI=$<BOOL:${MPI_CXX_FOUND}>;OMPI_SKIP_MPICXX;MPICH_SKIP_MPICXX"
+    SKIP_UNITY_BUILD_INCLUSION ON)
+  if(MPI_CXX_FOUND)
+    target_link_libraries(motiongan-verbs PUBLIC MPI::MPI_CXX)
+  else()
+    part_left_out("training on several machines is" libopenmpi-dev)
   endif()
 
   # The page of `motiongan serve`. It is not with the pages of view/, which are part of the library.

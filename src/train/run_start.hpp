@@ -13,6 +13,7 @@ struct RunArgs {
   bool resume = false, dry_run = false;
   double preview = 0;  ///< minutes between two pages; 0: none
   RunOptions run;
+  Parallel parallel;  ///< the ranks are those of begin_run()
 };
 
 /// Adds --save, --resume, --dry-run, --minutes, --save-every and --log-every; and --preview, if the verb
@@ -36,10 +37,11 @@ struct RunStart {
   std::shared_ptr<const io::FolderLock> lock;  ///< of the folder, if it is there already
 };
 
-/// Finds the folder of the run (--save, or else `save`) and, if it is resumed, calls `take(note, checkpoint)`
-/// with its stored options. `has_data`: the command line names clips. Throws Error if there are no clips, two
-/// sources of clips, no run to resume, or already a run in the folder.
-RunStart begin_run(const RunArgs& args, const fs::path& save, bool has_data, const CLI::App& verb,
+/// Joins the other ranks, if there are any. Finds the folder of the run (--save, or else `save`) and, if it
+/// is resumed, calls `take(note, checkpoint)` with its stored options. `has_data`: the command line names
+/// clips. Throws Error if there are no clips, two sources of clips, no run to resume, or already a run in the
+/// folder.
+RunStart begin_run(RunArgs& args, const fs::path& save, bool has_data, const CLI::App& verb,
                    const std::function<void(const std::string& note, const fs::path& checkpoint)>& take);
 
 /// Whether a resumed run has all its iterations already; prints so if it has.

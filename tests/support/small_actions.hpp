@@ -1,6 +1,7 @@
 // A small data set of procedural motion of two classes, for the action models.
 #pragma once
 #include <motiongan/data/action_dataset.hpp>
+#include <motiongan/nn/module.hpp>
 #include <motiongan/procedural/procedural.hpp>
 
 #include "../support/messages.hpp"

@@ -44,10 +44,15 @@ class Optimizer {
       at += gradients[i].size();
     }
     detail::copy_parts(copies, gradients_, 1, 0);
-    gather();
-    detail::forget_packed(values_);
-    ++steps_;
-    update();
+    step_from_gradients();
+  }
+
+  /// The same; `gradients` are those of all parameters concatenated, [n].
+  void step(const Tensor& gradients) {
+    require(gradients.shape() == gradients_.shape(), title_, ": gradients ", gradients.shape(), ", expected ",
+            gradients_.shape());
+    detail::copy_tensor(gradients, gradients_);
+    step_from_gradients();
   }
 
  protected:
@@ -89,6 +94,13 @@ class Optimizer {
   const Context& context() const { return values_.context(); }
 
  private:
+  void step_from_gradients() {
+    gather();
+    detail::forget_packed(values_);
+    ++steps_;
+    update();
+  }
+
   const char* title_;
   std::vector<Var> parameters_;
   Tensor values_, gradients_;

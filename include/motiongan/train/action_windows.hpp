@@ -42,12 +42,13 @@ class ActionSampler {
     buffer_ = ClipBuffer(context, data.format.dof(), poses);
   }
 
-  /// Draws `size` windows of 2T frames; class (if balanced), clip and start frame are uniform.
-  ActionBatch draw(std::uint64_t seed, std::uint32_t step, std::size_t size) const {
+  /// Draws `size` windows of 2T frames; class (if balanced), clip and start frame are uniform. They are
+  /// samples `first` and following of the step.
+  ActionBatch draw(std::uint64_t seed, std::uint32_t step, std::size_t size, std::size_t first = 0) const {
     const RandomKey key{.seed = seed, .stream = RandomStream::windows, .step = step};
     std::vector<cl_int> rows;
     ActionBatch batch;
-    for (std::uint32_t b = 0; b < size; ++b) {
+    for (auto b = static_cast<std::uint32_t>(first); b < first + size; ++b) {
       std::size_t index = 0;
       if (balanced_) {
         const auto& members = by_class_[random_below(key, b, by_class_.size(), 2)];

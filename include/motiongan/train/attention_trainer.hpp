@@ -176,50 +176,30 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
   /// rollouts r - 1 and r, with r uniform in 1..rollouts, so that later rollouts are in the critic's training
   /// distribution.
   void critic_step(std::uint32_t step) {
-    const RandomKey key{.seed = options_.seed, .step = step};
-    const ActionBatch batch = windows_.draw(options_.seed, step, options_.batch);
-    const Var classes = Var::constant(batch.classes);
-    Var prior = Var::constant(batch.prior), future;
-    {
-      const NoGrad values_only;
-      const std::size_t times = 1 + random_below(key.with(RandomStream::rollout), 0, options_.rollouts);
-      for (std::size_t r = 0; r < times; ++r) {
-        if (r > 0) prior = future;
-        future = model_.forward(prior, classes, noise_key(key, r));
-      }
-      future = concatenate({prior, future}, 0);
-    }
-    const CriticFn critic = [&](const Var& x) { return score(x, classes); };
-    const CriticFn critic_of_pairs = [&](const Var& x) {
-      return score(x, concatenate({classes, classes}, 0));
-    };
-    Tensor real, fake;
-    {
-      const NoGrad values_only;
-      real = seen(Var::constant(batch.motion)).value(), fake = seen(future).value();
-    }
-    const CriticLoss loss =
-        options_.weight_clip > 0
-            ? critic_loss(critic_of_pairs, real, fake)
-            : critic_loss(
-                  critic_of_pairs, critic, real, fake,
-                  random_uniform(model_.context(), key.with(RandomStream::interpolation), options_.batch),
-                  options_.lambda_gp);
-    critic_adam_.step(grad(loss.loss, critic_adam_.parameters()));
+    const std::vector<Var> told =
+        parallel_step(critic_adam_, parallel_, options_.batch,
+                      [&](const BatchPart& part) { return critic_loss_of(step, part); });
     if (options_.weight_clip > 0) critic_adam_.clip(options_.weight_clip);
-    wasserstein_ = loss.wasserstein.detach();
-    penalty_ = loss.penalty.empty() ? Var() : loss.penalty.detach();
+    wasserstein_ = told[0];
+    penalty_ = told.size() > 1 ? told[1] : Var();
   }
 
   /// One update of the classifier (eq. 11), on real futures only.
   void classifier_step(std::uint32_t step) {
-    const ActionBatch batch = windows_.draw(options_.seed, step, options_.batch);
-    const Var logits = classifier_(Var::constant(batch.future));
-    const Var loss = cross_entropy(logits, Var::constant(batch.classes));
-    classifier_adam_.step(grad(loss, classifier_adam_.parameters()));
-    classifier_loss_ = loss.detach();
-    logits_ = logits.value();
-    labels_ = batch.labels;
+    const std::vector<Var> told =
+        parallel_step(classifier_adam_, parallel_, options_.batch, [&](const BatchPart& part) -> PartLoss {
+          const ActionBatch batch = windows_.draw(options_.seed, step, part.count, part.first);
+          const Var logits = classifier_(Var::constant(batch.future));
+          const Var loss = cross_entropy(logits, Var::constant(batch.classes));
+          logits_ = logits.value();
+          labels_ = batch.labels;
+          if (part.count == options_.batch) return {loss, {loss}};
+          const Tensor right =
+              Tensor::from(model_.context(), {1}, std::vector{accuracy_of(logits_, labels_)});
+          return {loss, {loss, Var::constant(right)}};
+        });
+    classifier_loss_ = told[0];
+    accuracy_ = told.size() > 1 ? told[1] : Var();
   }
 
   /// The generator's loss (eq. 8) and its terms, each [1]; terms with weight 0 are empty.
@@ -227,11 +207,11 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
     Var total, adversarial, skeleton, blend, classification;
   };
 
-  /// The generator's loss on a batch, averaged over the rollouts; `step` selects the noise. Critic and
-  /// classifier are frozen.
-  GeneratorLoss generator_loss_of(const ActionBatch& batch, std::uint32_t step) {
+  /// The generator's loss on a batch, averaged over the rollouts; `step` selects the noise, of samples
+  /// `first` and following. Critic and classifier are frozen.
+  GeneratorLoss generator_loss_of(const ActionBatch& batch, std::uint32_t step, std::size_t first = 0) {
     const Frozen critic_fixed(named_parameters(critic_)), classifier_fixed(named_parameters(classifier_));
-    const RandomKey key{.seed = options_.seed, .step = step};
+    const RandomKey key = key_of(step, first);
     const Var classes = Var::constant(batch.classes), real_prior = Var::constant(batch.prior);
     std::vector<Var> priors, futures;
     for (std::size_t r = 0; r < options_.rollouts; ++r) {
@@ -263,12 +243,23 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
   /// One update of the generator; no gradient flows to critic and classifier.
   void generator_step(std::uint32_t step) {
     const Frozen critic_fixed(named_parameters(critic_)), classifier_fixed(named_parameters(classifier_));
-    const GeneratorLoss loss = generator_loss_of(windows_.draw(options_.seed, step, options_.batch), step);
-    generator_adam_.step(grad(loss.total, generator_adam_.parameters()));
+    const std::vector<Var> told =
+        parallel_step(generator_adam_, parallel_, options_.batch, [&](const BatchPart& part) -> PartLoss {
+          const GeneratorLoss loss =
+              generator_loss_of(windows_.draw(options_.seed, step, part.count, part.first), step, part.first);
+          PartLoss out{loss.total};
+          for (const Var& term :
+               {loss.total, loss.adversarial, loss.skeleton, loss.blend, loss.classification})
+            if (!term.empty()) out.told.push_back(term);
+          return out;
+        });
     if (mean_) mean_->update();
-    const auto value = [](const Var& part) { return part.empty() ? Var() : part.detach(); };
-    generator_loss_ = {value(loss.total), value(loss.adversarial), value(loss.skeleton), value(loss.blend),
-                       value(loss.classification)};
+    std::size_t at = 0;
+    const auto next = [&](bool has) { return has ? told[at++] : Var(); };
+    generator_loss_.total = next(true), generator_loss_.adversarial = next(true);
+    generator_loss_.skeleton = next(options_.skeleton_weight > 0);
+    generator_loss_.blend = next(options_.blend_weight > 0);
+    generator_loss_.classification = next(options_.class_weight > 0);
   }
 
   AttentionLosses losses() const override {
@@ -282,11 +273,52 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
             .blend = value(generator_loss_.blend),
             .classification = value(generator_loss_.classification),
             .classifier = classifier_loss_.item(),
-            .accuracy = accuracy_of(logits_, labels_),
+            .accuracy = accuracy_.empty() ? accuracy_of(logits_, labels_) : accuracy_.item(),
             .gamma = attention ? attention->gamma.item() : 0};
   }
 
  private:
+  RandomKey key_of(std::uint32_t step, std::size_t first) const {
+    return {.seed = options_.seed, .step = step, .first_sample = static_cast<std::uint32_t>(first)};
+  }
+
+  /// The critic's loss on a part of a batch.
+  PartLoss critic_loss_of(std::uint32_t step, const BatchPart& part) {
+    const RandomKey key = key_of(step, part.first);
+    const ActionBatch batch = windows_.draw(options_.seed, step, part.count, part.first);
+    const Var classes = Var::constant(batch.classes);
+    Var prior = Var::constant(batch.prior), future;
+    {
+      const NoGrad values_only;
+      // One number for all parts of a batch.
+      const std::size_t times =
+          1 + random_below(key_of(step, 0).with(RandomStream::rollout), 0, options_.rollouts);
+      for (std::size_t r = 0; r < times; ++r) {
+        if (r > 0) prior = future;
+        future = model_.forward(prior, classes, noise_key(key, r));
+      }
+      future = concatenate({prior, future}, 0);
+    }
+    const CriticFn critic = [&](const Var& x) { return score(x, classes); };
+    const CriticFn critic_of_pairs = [&](const Var& x) {
+      return score(x, concatenate({classes, classes}, 0));
+    };
+    Tensor real, fake;
+    {
+      const NoGrad values_only;
+      real = seen(Var::constant(batch.motion)).value(), fake = seen(future).value();
+    }
+    if (options_.weight_clip > 0) {
+      const CriticLoss loss = critic_loss(critic_of_pairs, real, fake);
+      return {loss.loss, {loss.wasserstein}};
+    }
+    const CriticLoss loss =
+        critic_loss(critic_of_pairs, critic, real, fake,
+                    random_uniform(model_.context(), key.with(RandomStream::interpolation), part.count),
+                    options_.lambda_gp);
+    return {loss.loss, {loss.wasserstein, loss.penalty}};
+  }
+
   /// A different noise for each rollout of a step.
   static RandomKey noise_key(RandomKey key, std::size_t rollout) {
     key.first_frame = static_cast<std::int32_t>(rollout);
@@ -307,6 +339,7 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
   Adam generator_adam_, critic_adam_, classifier_adam_;
   std::optional<WeightMean> mean_;  // of the generator
   Var wasserstein_, penalty_, classifier_loss_;
+  Var accuracy_;  // of the last batch, if it was divided; else that of the logits
   GeneratorLoss generator_loss_;
   Tensor logits_;
   std::vector<std::size_t> labels_;

@@ -56,12 +56,13 @@ class BaselineTrainer : public ModelTrainer<ActionGan, BaselineTrainOptions, Bas
   void iterate() override {
     follow_schedule(options_.adam.schedule);
     const KeepPacked weights_packed;
-    const ActionBatch batch =
-        windows_.draw(options_.seed, static_cast<std::uint32_t>(iteration_), options_.batch);
-    const Var made = model_.forward(Var::constant(batch.prior), Var::constant(batch.classes));
-    const Var loss = mean(square(made - Var::constant(batch.future)));
-    adam_.step(grad(loss, adam_.parameters()));
-    loss_ = loss.detach();
+    const auto step = static_cast<std::uint32_t>(iteration_);
+    loss_ = parallel_step(adam_, parallel_, options_.batch, [&](const BatchPart& part) -> PartLoss {
+              const ActionBatch batch = windows_.draw(options_.seed, step, part.count, part.first);
+              const Var made = model_.forward(Var::constant(batch.prior), Var::constant(batch.classes));
+              const Var loss = mean(square(made - Var::constant(batch.future)));
+              return {loss, {loss}};
+            }).front();
     ++iteration_;
   }
 

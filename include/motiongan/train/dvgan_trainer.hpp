@@ -119,53 +119,62 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
 
   /// One update of the critic; `step` selects its random numbers.
   void critic_step(std::uint32_t step) {
-    const Context& context = model_.context();
-    const RandomKey key{.seed = options_.seed, .step = step};
-    const CaptionedBatch batch = windows_.draw(options_.seed, step, options_.batch);
-    Var fake;
-    {
-      const NoGrad values_only;
-      fake = make_fake(batch, key);
-    }
-    const Indices shift = draw_shift(key);
-    const Tensor real = shifted(sees_(Var::constant(batch.motion)), shift).value();
-    const Var h_txt = critic_.encode_text(batch.text), pairs_txt = concatenate({h_txt, h_txt}, 0);
-    critic_loss_ = critic_loss(
-        [&](const Var& x) { return critic_(x, pairs_txt); }, [&](const Var& x) { return critic_(x, h_txt); },
-        real, shifted(sees_(fake), shift).value(),
-        random_uniform(context, key.with(RandomStream::interpolation), options_.batch), options_.lambda_gp);
-    critic_adam_.step(grad(critic_loss_.loss, critic_adam_.parameters()));
-    critic_loss_ = {
-        {}, critic_loss_.wasserstein.detach(), critic_loss_.penalty.detach(), {}};  // drops the graph
+    const std::vector<Var> told =
+        parallel_step(critic_adam_, parallel_, options_.batch, [&](const BatchPart& part) -> PartLoss {
+          const RandomKey key = key_of(step, part);
+          const CaptionedBatch batch = windows_.draw(options_.seed, step, part.count, part.first);
+          Var fake;
+          {
+            const NoGrad values_only;
+            fake = make_fake(batch, key);
+          }
+          const Indices shift = draw_shift(key, part.count);
+          const Tensor real = shifted(sees_(Var::constant(batch.motion)), shift).value();
+          const Var h_txt = critic_.encode_text(batch.text), pairs_txt = concatenate({h_txt, h_txt}, 0);
+          const CriticLoss loss = critic_loss(
+              [&](const Var& x) { return critic_(x, pairs_txt); },
+              [&](const Var& x) { return critic_(x, h_txt); }, real, shifted(sees_(fake), shift).value(),
+              random_uniform(model_.context(), key.with(RandomStream::interpolation), part.count),
+              options_.lambda_gp);
+          return {loss.loss, {loss.wasserstein, loss.penalty}};
+        });
+    wasserstein_ = told[0], penalty_ = told[1];
   }
 
   /// One update of the generator; no gradient flows to the critic's parameters.
   void generator_step(std::uint32_t step) {
     const Frozen critic_fixed(named_parameters(critic_));
-    const RandomKey key{.seed = options_.seed, .step = step};
-    const CaptionedBatch batch = windows_.draw(options_.seed, step, options_.batch);
-    const Var made = make_fake(batch, key), fake = shifted(sees_(made), draw_shift(key));
-    Var h_txt;
-    {
-      const NoGrad values_only;  // the critic's text encoding does not depend on the generator
-      h_txt = critic_.encode_text(batch.text);
-    }
-    Var loss = generator_loss(critic_(fake, h_txt));
-    if (body_losses_) loss = loss + (*body_losses_)(made, Var::constant(batch.motion));
-    generator_adam_.step(grad(loss, generator_adam_.parameters()));
+    generator_loss_ =
+        parallel_step(generator_adam_, parallel_, options_.batch, [&](const BatchPart& part) -> PartLoss {
+          const RandomKey key = key_of(step, part);
+          const CaptionedBatch batch = windows_.draw(options_.seed, step, part.count, part.first);
+          const Var made = make_fake(batch, key), fake = shifted(sees_(made), draw_shift(key, part.count));
+          Var h_txt;
+          {
+            const NoGrad values_only;  // the critic's text encoding does not depend on the generator
+            h_txt = critic_.encode_text(batch.text);
+          }
+          Var loss = generator_loss(critic_(fake, h_txt));
+          if (body_losses_) loss = loss + (*body_losses_)(made, Var::constant(batch.motion));
+          return {loss, {loss}};
+        }).front();
     if (mean_) mean_->update();
-    generator_loss_ = loss.detach();
   }
 
   DvganLosses losses() const override {
     require(!generator_loss_.empty(), "no iteration has run yet");
-    return {critic_loss_.wasserstein.item(), critic_loss_.penalty.item(), generator_loss_.item()};
+    return {wasserstein_.item(), penalty_.item(), generator_loss_.item()};
   }
 
  private:
+  RandomKey key_of(std::uint32_t step, const BatchPart& part) const {
+    return {.seed = options_.seed, .step = step, .first_sample = static_cast<std::uint32_t>(part.first)};
+  }
+
   /// A fake [N, B, M] with the captions of the batch.
   Var make_fake(const CaptionedBatch& batch, const RandomKey& key) const {
-    const RandomKey draw = key.with(RandomStream::seeding);
+    RandomKey draw = key.with(RandomStream::seeding);
+    draw.first_sample = 0;  // one number for all parts of a batch
     const double chance = (static_cast<double>(random_word(draw, 0)) + 0.5) * 0x1p-32;
     if (!(chance < options_.completion_share)) return model_.forward(batch.text, key);
     const std::size_t given =
@@ -173,12 +182,12 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
     return model_.complete(batch.text, slice(Var::constant(batch.motion), 0, 0, given), key);
   }
 
-  /// A uniform shift in frames, [-N/2, N/2], for each sample: [B]; empty if shifting is off.
-  Indices draw_shift(const RandomKey& key) const {
+  /// A uniform shift in frames, [-N/2, N/2], for each of `count` samples; empty if shifting is off.
+  Indices draw_shift(const RandomKey& key, std::size_t count) const {
     if (!options_.input_shift) return {};
     const std::size_t frames = model_.format().frames, half = frames / 2;
-    return random_integers(model_.context(), key.with(RandomStream::shift), options_.batch,
-                           -static_cast<int>(half), 2 * half + 1);
+    return random_integers(model_.context(), key.with(RandomStream::shift), count, -static_cast<int>(half),
+                           2 * half + 1);
   }
   Var shifted(const Var& motion, const Indices& shift) const {
     return shift.empty() ? motion : shift_frames(motion, shift, motion.dim(0), {.sign = -1});
@@ -190,8 +199,7 @@ class DvganTrainer : public ModelTrainer<Dvgan, DvganTrainOptions, DvganLosses> 
   DvganCritic critic_;
   Adam generator_adam_, critic_adam_;
   std::optional<WeightMean> mean_;  // of the generator
-  CriticLoss critic_loss_;
-  Var generator_loss_;
+  Var wasserstein_, penalty_, generator_loss_;
 };
 
 /// Trains a Dvgan: a whole run, see run_training(). The model then has the running mean of its weights, as

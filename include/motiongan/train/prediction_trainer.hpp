@@ -84,10 +84,11 @@ class PredictionTrainer : public ModelTrainer<PredictionModel, PredictionTrainOp
     follow_schedule(options_.adam.schedule);
     const KeepPacked weights_packed;
     const auto step = static_cast<std::uint32_t>(iteration_);
-    const PredictionBatch batch = windows_.draw(options_.seed, step, options_.batch);
-    const Var loss = model_.one_step_ahead() ? one_step_loss(batch, step) : copy_loss(batch);
-    optimizer_->step(grad(loss, optimizer_->parameters()));
-    loss_ = loss.detach();
+    loss_ = parallel_step(*optimizer_, parallel_, options_.batch, [&](const BatchPart& part) -> PartLoss {
+              const PredictionBatch batch = windows_.draw(options_.seed, step, part.count, part.first);
+              const Var loss = model_.one_step_ahead() ? one_step_loss(batch, step, part) : copy_loss(batch);
+              return {loss, {loss}};
+            }).front();
     ++iteration_;
   }
 
@@ -104,8 +105,8 @@ class PredictionTrainer : public ModelTrainer<PredictionModel, PredictionTrainOp
   }
 
   Var frames_of(const PredictionBatch& batch, std::size_t first, std::size_t count) const {
-    const std::size_t dof = model_.dof();
-    return Var::constant(batch.windows.view(first * options_.batch * dof, {count, options_.batch, dof}));
+    const std::size_t dof = model_.dof(), size = batch.windows.dim(1);
+    return Var::constant(batch.windows.view(first * size * dof, {count, size, dof}));
   }
 
   /// MSE of the future that the model predicts from the prefix, fed with its own output.
@@ -116,12 +117,15 @@ class PredictionTrainer : public ModelTrainer<PredictionModel, PredictionTrainOp
   }
 
   /// MSE of the next pose predicted at each frame of the window (teacher forcing), with noise on the input.
-  Var one_step_loss(const PredictionBatch& batch, std::uint32_t step) const {
+  Var one_step_loss(const PredictionBatch& batch, std::uint32_t step, const BatchPart& part) const {
     const std::size_t count = options_.prefix + options_.future - 1;
     Var seen = frames_of(batch, 0, count);
     if (const double deviation = noise_at(step); deviation > 0) {
-      const RandomKey key{.seed = options_.seed, .stream = RandomStream::noise, .step = step};
-      const Tensor noise = random_normal(model_.context(), key, count, options_.batch, model_.dof());
+      const RandomKey key{.seed = options_.seed,
+                          .stream = RandomStream::noise,
+                          .step = step,
+                          .first_sample = static_cast<std::uint32_t>(part.first)};
+      const Tensor noise = random_normal(model_.context(), key, count, part.count, model_.dof());
       seen = weighted_sum(seen, 1, Var::constant(noise), deviation);
     }
     return mean(square(model_.next_poses(seen) - frames_of(batch, 1, count)));

@@ -76,12 +76,14 @@ class PredictionSampler {
     buffer_ = ClipBuffer(context, data.dof, poses);
   }
 
-  /// Draws `size` windows: a uniform sequence, then a uniform start frame.
-  PredictionBatch draw(std::uint64_t seed, std::uint32_t step, std::size_t size) const {
+  /// Draws `size` windows: a uniform sequence, then a uniform start frame. They are samples
+  /// `first` and following of the step.
+  PredictionBatch draw(std::uint64_t seed, std::uint32_t step, std::size_t size,
+                       std::size_t first = 0) const {
     const RandomKey key{.seed = seed, .stream = RandomStream::windows, .step = step};
     std::vector<cl_int> rows;
     std::vector<std::size_t> actions;
-    for (std::uint32_t b = 0; b < size; ++b) {
+    for (auto b = static_cast<std::uint32_t>(first); b < first + size; ++b) {
       const std::size_t index = random_below(key, b, sequences_.size());
       const Sequence& sequence = sequences_[index];
       rows.push_back(buffer_.row(index, random_below(key, b, sequence.starts, 1)));

@@ -87,48 +87,60 @@ class RankerTrainer : public ModelTrainer<Ranker, RankerTrainOptions, RankerLoss
     follow_schedule(options_.adam.schedule);
     const KeepPacked weights_packed;
     const auto step = static_cast<std::uint32_t>(iteration_);
-    const CaptionedBatch batch = windows_.draw(options_.seed, step, options_.batch);
-    const std::vector<std::size_t> asked = candidates(batch.clips, step);
+    const std::vector<std::size_t> asked =
+        candidates(windows_.clips_of(options_.seed, step, options_.batch), step);
     std::vector<std::vector<int>> sentences;
     for (const std::size_t d : asked) sentences.push_back(sentences_[d]);
-    right_.assign(options_.batch * asked.size(), 0);
-    for (std::size_t b = 0; b < options_.batch; ++b) {
-      const std::vector<std::size_t>& of = descriptions_.of_clip[batch.clips[b]];
-      for (std::size_t i = 0; i < asked.size(); ++i)
-        if (std::binary_search(of.begin(), of.end(), asked[i]))
-          right_[b * asked.size() + i] = 1 / static_cast<float>(of.size());
-    }
     const Context& context = model_.context();
-    const Var text = model_.describe(Sentences(context, sentences, model_.format().vocabulary.size()));
-    const Var scores = model_.scores(Var::constant(batch.motion), text);
-    const Var loss =
-        cross_entropy(scores, Var::constant(Tensor::from(context, {options_.batch, asked.size()}, right_)));
-    adam_.step(grad(loss, adam_.parameters()));
-    loss_ = loss.detach();
-    scores_ = scores.detach();
+    const std::vector<Var> told =
+        parallel_step(adam_, parallel_, options_.batch, [&](const BatchPart& part) -> PartLoss {
+          const CaptionedBatch batch = windows_.draw(options_.seed, step, part.count, part.first);
+          right_.assign(part.count * asked.size(), 0);
+          for (std::size_t b = 0; b < part.count; ++b) {
+            const std::vector<std::size_t>& of = descriptions_.of_clip[batch.clips[b]];
+            for (std::size_t i = 0; i < asked.size(); ++i)
+              if (std::binary_search(of.begin(), of.end(), asked[i]))
+                right_[b * asked.size() + i] = 1 / static_cast<float>(of.size());
+          }
+          const Var text = model_.describe(Sentences(context, sentences, model_.format().vocabulary.size()));
+          const Var scores = model_.scores(Var::constant(batch.motion), text);
+          const Var loss =
+              cross_entropy(scores, Var::constant(Tensor::from(context, {part.count, asked.size()}, right_)));
+          scores_ = scores.detach();
+          if (part.count == options_.batch) return {loss, {loss}};
+          return {loss, {loss, Var::constant(Tensor::from(context, {1}, std::vector{share_found()}))}};
+        });
+    loss_ = told[0];
+    found_ = told.size() > 1 ? told[1] : Var();
     ++iteration_;
   }
 
   RankerLosses losses() const override {
     require(!loss_.empty(), "no iteration has run yet");
+    return {loss_.item(), found_.empty() ? share_found() : found_.item()};
+  }
+
+ private:
+  /// The share of the samples of scores_ whose best description is one of theirs.
+  double share_found() const {
     const std::vector<float> scores = scores_.value().to_host();
-    const std::size_t count = scores_.dim(1);
+    const std::size_t size = scores_.dim(0), count = scores_.dim(1);
     double found = 0;
-    for (std::size_t b = 0; b < options_.batch; ++b) {
+    for (std::size_t b = 0; b < size; ++b) {
       const auto row = scores.begin() + static_cast<std::ptrdiff_t>(b * count);
       const auto best = std::max_element(row, row + static_cast<std::ptrdiff_t>(count)) - scores.begin();
       found += right_[static_cast<std::size_t>(best)] > 0 ? 1 : 0;
     }
-    return {loss_.item(), found / static_cast<double>(options_.batch)};
+    return found / static_cast<double>(size);
   }
 
- private:
   WindowSampler windows_;
   motion::Descriptions descriptions_;
   std::vector<std::vector<int>> sentences_;
   Adam adam_;
   Var loss_, scores_;
-  std::vector<float> right_;  // targets of the last step, [B, K]
+  Var found_;                 // the share of the last batch, if it was divided; else that of scores_
+  std::vector<float> right_;  // targets of scores_, [B, K]
 };
 
 /// Trains a ranker: a whole run, see run_training(). The ranker is saved as ranker.safetensors.

@@ -11,6 +11,7 @@
 #include "motiongan/train/checkpoint.hpp"
 #include "motiongan/train/csv_log.hpp"
 #include "motiongan/train/interruption.hpp"
+#include "motiongan/train/ranks.hpp"
 #include "motiongan/train/run_folder.hpp"
 
 namespace motiongan {
@@ -128,8 +129,14 @@ class RunLoop {
       run_.warn = [](const std::string& text) {
         std::fprintf(stderr, "motiongan: warning: %s\n", text.c_str());
       };
-    if (!run_.save_dir.empty()) open(write_split);
-    callbacks_.push_back(log_rows(log_, run_.log_every, run_.report));
+    if (!is_first()) run_.callbacks.clear(), run_.report = {};
+    if (!run_.save_dir.empty() && is_first()) open(write_split);
+    if (ranks() != nullptr) {
+      require_same_training(trainer_, *ranks());
+      take_state_of_first(trainer_, *ranks());
+      first_ = trainer_.iteration();
+    }
+    if (is_first()) callbacks_.push_back(log_rows(log_, run_.log_every, run_.report));
     if (run_.max_minutes > 0) callbacks_.push_back(time_limit(run_.max_minutes));
     if (run_.should_stop) callbacks_.push_back([this](const Trainer&) { return run_.should_stop(); });
     if (run_.interrupted) callbacks_.push_back([this](const Trainer&) { return run_.interrupted(); });
@@ -138,17 +145,45 @@ class RunLoop {
 
   RunResult train() {
     bool stopped = false;
-    Interruption interruption(trainer_, run_.interrupted, run_.long_iteration);
+    // A rank cannot give up an iteration that others are in.
+    Interruption interruption(trainer_, ranks() == nullptr ? run_.interrupted : nullptr, run_.long_iteration);
     while (trainer_.iteration() < trainer_.iterations() && !stopped) {
-      stopped = !interruption.iterate() || after_iteration();
-      if (!stopped && run_.save_every_minutes > 0 && clock_seconds() - saved_ >= run_.save_every_minutes * 60)
-        save_or_warn();
+      const bool given_up = !interruption.iterate();
+      stopped = any_stops([&] {
+        if (given_up || after_iteration()) return true;
+        if (run_.save_every_minutes > 0 && clock_seconds() - saved_ >= run_.save_every_minutes * 60)
+          save_or_warn();
+        return false;
+      });
     }
-    save();
+    any_stops([&] {
+      save();
+      return false;
+    });
     return {trainer_.iteration(), trainer_.iteration() < trainer_.iterations()};
   }
 
  private:
+  Communicator* ranks() const { return trainer_.parallel().ranks.get(); }
+  bool is_first() const { return trainer_.parallel().is_first(); }
+
+  /// Whether this rank, by what `work` returns, or another one wants to stop. If `work` throws, the others
+  /// are told; they throw Error then.
+  template <class Work>
+  bool any_stops(const Work& work) {
+    if (ranks() == nullptr) return work();
+    try {
+      const bool stop = work();
+      return tell_ranks(*ranks(), {.stop = stop});
+    } catch (const RankError&) {
+      throw;
+    } catch (...) {
+      const std::exception_ptr problem = std::current_exception();
+      tell_ranks(*ranks(), {.failed = true});
+      std::rethrow_exception(problem);
+    }
+  }
+
   void open(const std::function<void(const std::filesystem::path&)>& write_split) {
     std::filesystem::create_directories(run_.save_dir);
     folder_.emplace(RunFiles{run_.save_dir}, run_.lock);

@@ -9,6 +9,7 @@
 #include "motiongan/core/fields.hpp"
 #include "motiongan/data/motion_format.hpp"
 #include "motiongan/data/position_format.hpp"
+#include "motiongan/distributed/parallel.hpp"
 #include "motiongan/models/model_file.hpp"
 #include "motiongan/optim/optimizer.hpp"
 #include "motiongan/optim/schedule.hpp"
@@ -68,6 +69,15 @@ class Trainer {
   /// Total number of iterations.
   virtual std::size_t iterations() const = 0;
 
+  /// Divides batches among ranks. All ranks set it alike, before the first iteration.
+  void set_parallel(Parallel parallel) {
+    check_parallel(parallel, batch());
+    parallel_ = std::move(parallel);
+  }
+  const Parallel& parallel() const { return parallel_; }
+  /// Samples in a step, on all ranks together.
+  virtual std::size_t batch() const = 0;
+
   /// The networks and their optimizers; the model comes first.
   virtual std::vector<TrainedPart> parts() = 0;
   /// Losses of the last iteration; reading them waits for the device.
@@ -92,6 +102,7 @@ class Trainer {
   }
 
   std::size_t iteration_ = 0;
+  Parallel parallel_;
 };
 
 /// Gives each network that has a running mean of its weights that mean. For the end of a training: the
@@ -138,6 +149,7 @@ class ModelTrainer : public Trainer {
   Model& model() { return model_; }
   const TrainOptions& options() const { return options_; }
   std::size_t iterations() const override { return options_.iterations; }
+  std::size_t batch() const override { return options_.batch; }
 
   /// Losses of the last iteration; reading them waits for the device. Throws Error before the first.
   virtual Losses losses() const = 0;

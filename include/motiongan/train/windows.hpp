@@ -46,27 +46,26 @@ class WindowSampler {
   }
 
   /// Draws `size` windows: for each a clip, one of its captions and a start frame, all uniform. Balanced: a
-  /// description, one of its clips and a start frame.
-  CaptionedBatch draw(std::uint64_t seed, std::uint32_t step, std::size_t size) const {
-    const RandomKey windows{.seed = seed, .stream = RandomStream::windows, .step = step},
-        captions = windows.with(RandomStream::captions);
+  /// description, one of its clips and a start frame. They are samples `first` and following of the step.
+  CaptionedBatch draw(std::uint64_t seed, std::uint32_t step, std::size_t size, std::size_t first = 0) const {
     std::vector<cl_int> rows;
     std::vector<std::vector<int>> sentences;
-    std::vector<std::size_t> drawn;
-    for (std::uint32_t b = 0; b < size; ++b) {
-      if (described_.empty()) {
-        drawn.push_back(random_below(windows, b, clips_.size()));
-        const auto& known = clips_[drawn.back()].sentences;
-        sentences.push_back(known[random_below(captions, b, known.size())]);
-      } else {
-        const Description& one = described_[random_below(captions, b, described_.size())];
-        drawn.push_back(one.clips[random_below(windows, b, one.clips.size())]);
-        sentences.push_back(one.sentence);
-      }
-      rows.push_back(buffer_.row(drawn.back(), random_below(windows, b, clips_[drawn.back()].starts, 1)));
+    std::vector<std::size_t> clips;
+    for (auto b = static_cast<std::uint32_t>(first); b < first + size; ++b) {
+      const Drawn one = drawn(seed, step, b);
+      clips.push_back(one.clip);
+      sentences.push_back(*one.sentence);
+      rows.push_back(buffer_.row(one.clip, one.start));
     }
     return {buffer_.gather(rows, frames_, stride_), Sentences(context_, sentences, vocabulary_),
-            std::move(drawn)};
+            std::move(clips)};
+  }
+
+  /// The training clips that draw() takes `size` windows from.
+  std::vector<std::size_t> clips_of(std::uint64_t seed, std::uint32_t step, std::size_t size) const {
+    std::vector<std::size_t> out;
+    for (std::uint32_t b = 0; b < size; ++b) out.push_back(drawn(seed, step, b).clip);
+    return out;
   }
 
  private:
@@ -78,6 +77,27 @@ class WindowSampler {
     std::vector<int> sentence;
     std::vector<std::size_t> clips;
   };
+
+  struct Drawn {
+    std::size_t clip, start;
+    const std::vector<int>* sentence;
+  };
+  Drawn drawn(std::uint64_t seed, std::uint32_t step, std::uint32_t sample) const {
+    const RandomKey windows{.seed = seed, .stream = RandomStream::windows, .step = step},
+        captions = windows.with(RandomStream::captions);
+    Drawn out{};
+    if (described_.empty()) {
+      out.clip = random_below(windows, sample, clips_.size());
+      const auto& known = clips_[out.clip].sentences;
+      out.sentence = &known[random_below(captions, sample, known.size())];
+    } else {
+      const Description& one = described_[random_below(captions, sample, described_.size())];
+      out.clip = one.clips[random_below(windows, sample, one.clips.size())];
+      out.sentence = &one.sentence;
+    }
+    out.start = random_below(windows, sample, clips_[out.clip].starts, 1);
+    return out;
+  }
 
   Context context_;
   std::size_t frames_, stride_, vocabulary_;

@@ -1,0 +1,87 @@
+// Trainings divided among ranks by the command: the same bits with any number of processes, also after one of
+// them was killed.
+#include <doctest/doctest.h>
+
+#include "command.hpp"
+
+namespace {
+
+const std::string training =
+    "train dvgan clips --frames 16 --hidden 8 --batch 8 --critic-steps 2 --split-seed 3 --shards 4 ";
+
+/// The command on several processes, two threads of OpenCL at most for each.
+std::string on_ranks(int ranks, const std::string& arguments) {
+  return "POCL_MAX_PTHREAD_COUNT=1 timeout 120 mpirun --allow-run-as-root --oversubscribe --bind-to none "
+         "-n " +
+         std::to_string(ranks) + " '" + MOTIONGAN_COMMAND + "' " + arguments;
+}
+
+bool has_mpi() {
+  if (shell("mpirun --version").status != 0) {
+    MESSAGE("skipped: there is no mpirun; on Debian: apt-get install openmpi-bin libopenmpi-dev");
+    return false;
+  }
+  if (!shell(on_ranks(2, "train dvgan none --save none")).has("without MPI")) return true;
+  MESSAGE("skipped: the command was built without MPI");
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("--shards: a resumed run keeps them, and ends as one that was not stopped") {
+  const TestFolder folder;
+  REQUIRE(call("synth clips --clips 6 --seconds 5").status == 0);
+  REQUIRE(call(training + "--save whole --iterations 4").status == 0);
+  REQUIRE(call(training + "--save parts --iterations 2").status == 0);
+  const Said rest = call("train dvgan --resume --save parts --iterations 4");
+  CHECK_MESSAGE(rest.status == 0, rest.text);
+  CHECK(bytes_of("parts/generator.safetensors") == bytes_of("whole/generator.safetensors"));
+  const Said other = call("train dvgan --resume --save parts --iterations 5 --shards 8");
+  CHECK(other.status != 0);
+  CHECK_MESSAGE(other.has("the run was started with --shards 4"), other.text);
+  const Said uneven = call("train dvgan clips --frames 16 --hidden 8 --batch 9 --shards 4 --save uneven");
+  CHECK(uneven.status != 0);
+  CHECK_MESSAGE(uneven.has("a batch of 9 cannot be cut into 4 shards of equal size"), uneven.text);
+}
+
+TEST_CASE("mpirun: the same bits with 1, 2 and 4 processes, and other options are refused") {
+  if (!has_mpi()) return;
+  const TestFolder folder;
+  REQUIRE(call("synth clips --clips 6 --seconds 5").status == 0);
+  REQUIRE(call(training + "--save one --iterations 3").status == 0);
+  for (const int ranks : {2, 4}) {
+    const std::string save = "on" + std::to_string(ranks);
+    const Said said = shell(on_ranks(ranks, training + "--iterations 3 --save " + save));
+    CHECK_MESSAGE(said.status == 0, said.text);
+    CHECK(said.has("finished after 3 of 3 iterations"));
+    CHECK(bytes_of(save + "/generator.safetensors") == bytes_of("one/generator.safetensors"));
+    CHECK(bytes_of(save + "/critic.safetensors") == bytes_of("one/critic.safetensors"));
+  }
+  const std::string rank = "'" + std::string(MOTIONGAN_COMMAND) + "' " + training;
+  const Said said = shell("timeout 120 mpirun --allow-run-as-root --oversubscribe -n 1 " + rank +
+                          "--save no --iterations 3 : -n 1 " + rank + "--save no --iterations 3 --lambda 5");
+  CHECK(said.status != 0);
+  CHECK_MESSAGE(said.has("rank 1 was started with another training than rank 0: \"training\" is"), said.text);
+}
+
+TEST_CASE("mpirun: a rank is killed; the job ends, and goes on with another number of ranks") {
+  if (!has_mpi()) return;
+  const TestFolder folder;
+  REQUIRE(call("synth clips --clips 6 --seconds 5").status == 0);
+  const Said killed =
+      shell("(" + on_ranks(2, training + "--save run --iterations 100000 --save-every 0.01") +
+            "; echo ended with $?) & while ! grep -q ^3, run/log.csv 2>/dev/null; do sleep 0.2; done; "
+            "sleep 1; pkill -9 -n -f -- '--save run --iterations 100000'; wait");
+  CHECK_MESSAGE(killed.has("ended with"), killed.text);
+  CHECK_FALSE(killed.has("ended with 0"));
+  REQUIRE(fs::exists("run/checkpoint.safetensors"));
+  const Said info = call("info run/checkpoint.safetensors");
+  const std::size_t at = info.text.find("iteration");
+  REQUIRE_MESSAGE(at != std::string::npos, info.text);
+  const long done = std::stol(info.text.substr(info.text.find_first_of("0123456789", at)));
+  const std::string more = std::to_string(done + 2);
+  const Said rest = shell(on_ranks(4, "train dvgan --resume --save run --iterations " + more));
+  CHECK_MESSAGE(rest.status == 0, rest.text);
+  REQUIRE(call(training + "--save whole --iterations " + more).status == 0);
+  CHECK(bytes_of("run/generator.safetensors") == bytes_of("whole/generator.safetensors"));
+}
