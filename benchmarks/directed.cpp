@@ -7,7 +7,6 @@
 // by 45 degrees) and measured as `evaluate model` does, beside undirected ones.
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <motiongan/data/dataset.hpp>
 #include <motiongan/direct/between.hpp>
 #include <motiongan/direct/pace.hpp>
@@ -223,14 +222,7 @@ class Study {
 }  // namespace
 
 int main(int count, char** arguments) {
-  std::size_t rounds = 20;
-  std::vector<std::string> given;
-  for (int i = 1; i < count; ++i) {
-    if (std::strcmp(arguments[i], "--rounds") == 0 && i + 1 < count)
-      rounds = std::max(16UL, std::stoul(arguments[++i]));
-    else
-      given.emplace_back(arguments[i]);
-  }
+  const auto [rounds, given] = given_arguments(count, arguments, 16);
   if (given.size() < 3) {
     std::fprintf(stderr, "usage: bench_directed [--rounds 20] RUN CLIPS CAPTIONS [RANKER]\n");
     return 1;

@@ -5,7 +5,6 @@
 // first one without CLASS). Paths are random ones of 8 seconds; poses are those of held-out clips of the
 // class, after 2 seconds; loops last 4 seconds. Lengths are in leg lengths. The run's classifier says how
 // many of the seconds that were made still are of the class.
-#include <cstring>
 #include <motiongan/data/action_dataset.hpp>
 #include <motiongan/direct/action_direct.hpp>
 #include <motiongan/direct/pace.hpp>
@@ -145,14 +144,7 @@ class Study {
 }  // namespace
 
 int main(int count, char** arguments) {
-  std::size_t rounds = 20;
-  std::vector<std::string> given;
-  for (int i = 1; i < count; ++i) {
-    if (std::strcmp(arguments[i], "--rounds") == 0 && i + 1 < count)
-      rounds = std::max(1UL, std::stoul(arguments[++i]));
-    else
-      given.emplace_back(arguments[i]);
-  }
+  const auto [rounds, given] = given_arguments(count, arguments, 1);
   if (given.size() < 3) {
     std::fprintf(stderr, "usage: bench_directed_actions [--rounds 20] RUN CLIPS LABELS [CLASS]\n");
     return 1;

@@ -1,18 +1,37 @@
 // What the benchmarks of directed motion share.
 #pragma once
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <motiongan/core/random.hpp>
 #include <motiongan/direct/constraints.hpp>
 #include <motiongan/direct/world_pose.hpp>
 #include <motiongan/metrics/motion_quality.hpp>
+#include <string>
 #include <vector>
 
 namespace motiongan {
 
 inline double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// [--rounds N] and the other arguments.
+struct Given {
+  std::size_t rounds = 20;
+  std::vector<std::string> names;
+};
+inline Given given_arguments(int count, char** arguments, std::size_t fewest_rounds) {
+  Given out;
+  for (int i = 1; i < count; ++i) {
+    if (std::strcmp(arguments[i], "--rounds") == 0 && i + 1 < count)
+      out.rounds = std::max(fewest_rounds, static_cast<std::size_t>(std::stoul(arguments[++i])));
+    else
+      out.names.emplace_back(arguments[i]);
+  }
+  return out;
 }
 
 /// A path of `way` that bends left and right.

@@ -22,17 +22,7 @@ inline std::size_t find_joint(const motion::Skeleton& skeleton, const std::strin
   for (std::size_t j = 0; j < skeleton.size(); ++j) {
     const std::string own = motion::feet_detail::lower_case(skeleton.joints[j].name);
     if (own == wanted) return j;
-    std::vector<std::size_t> row(own.size() + 1);
-    for (std::size_t i = 0; i <= own.size(); ++i) row[i] = i;
-    for (std::size_t i = 1; i <= wanted.size(); ++i) {
-      std::size_t corner = std::exchange(row[0], i);
-      for (std::size_t k = 1; k <= own.size(); ++k) {
-        const std::size_t changed = corner + (wanted[i - 1] == own[k - 1] ? 0 : 1);
-        corner = row[k];
-        row[k] = std::min({changed, row[k] + 1, row[k - 1] + 1});
-      }
-    }
-    near.emplace_back(row.back(), skeleton.joints[j].name);
+    near.emplace_back(motion::position_format_detail::edit_distance(wanted, own), skeleton.joints[j].name);
   }
   std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::string names;
