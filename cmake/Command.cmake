@@ -33,7 +33,7 @@ elseif(sources)
     part_left_out("FBX files of the command are" libassimp-dev)
   endif()
 
-  set_source_files_properties("${PROJECT_SOURCE_DIR}/src/train/ranks.cpp" PROPERTIES
+  set_source_files_properties("${PROJECT_SOURCE_DIR}/src/shared/ranks.cpp" PROPERTIES
     COMPILE_DEFINITIONS "MOTIONGAN_WITH_MPI=$<BOOL:${MPI_CXX_FOUND}>;OMPI_SKIP_MPICXX;MPICH_SKIP_MPICXX"
     SKIP_UNITY_BUILD_INCLUSION ON)
   if(MPI_CXX_FOUND)

@@ -9,6 +9,7 @@
 #include "shared/cleaning.hpp"
 #include "shared/outputs.hpp"
 #include "shared/prompt.hpp"
+#include "shared/ranks.hpp"
 #include "shared/sampling.hpp"
 #include "shared/show.hpp"
 #include "shared/signals.hpp"
@@ -209,8 +210,10 @@ int generate(const GenerateArgs& args, const fs::path& file) {
 }
 
 /// Generates with either kind of model. Throws Error for options of the other kind.
-int generate_either(const GenerateArgs& args, ActionGenerateArgs actions, const CLI::App& verb) {
+int generate_either(GenerateArgs args, ActionGenerateArgs actions, const CLI::App& verb) {
   const fs::path file = model_file(args.model);
+  const std::shared_ptr<const Communicator> ranks = join_ranks();
+  need_one_rank(ranks.get(), verb, {"--html", "--png", "--drift", "--attention-map"});
   std::vector<fs::path> inputs =
       inputs_of(actions.from, {args.prompts, actions.data, args.retargeting.skeleton, args.retargeting.map});
   inputs.push_back(file);
@@ -223,7 +226,9 @@ int generate_either(const GenerateArgs& args, ActionGenerateArgs actions, const 
     const std::string wrong = given_action_options(verb);
     require(wrong.empty(), file.string(), " generates motion for a text: it has no classes, and takes no ",
             wrong, "; use --text \"walk\"");
-    return generate(args, file);
+    const Share share = share_of(args.options.count, ranks.get());
+    args.options.first_sample += share.first, args.options.count = share.count;
+    return share.count > 0 ? generate(args, file) : 0;
   }
   for (const char* name : {"--text", "--prompts", "--drift"})
     require(verb.count(name) == 0, file.string(), " generates motion for classes: it takes no ", name,
@@ -234,7 +239,7 @@ int generate_either(const GenerateArgs& args, ActionGenerateArgs actions, const 
   actions.rate = args.rate;
   actions.weights = args.weights, actions.cleaning = args.cleaning, actions.format = args.format;
   actions.retargeting = args.retargeting, actions.directing = args.directing;
-  return generate_actions(actions, verb, file);
+  return generate_actions(actions, verb, file, ranks.get());
 }
 
 const Verb generate_verb{

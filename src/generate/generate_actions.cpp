@@ -169,7 +169,8 @@ std::string given_action_options(const CLI::App& verb) {
   return out;
 }
 
-int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const fs::path& file) {
+int generate_actions(ActionGenerateArgs args, const CLI::App& verb, const fs::path& file,
+                     const Communicator* ranks) {
   const Context context;
   ActionGan model = load_with<ActionGan>(context, file, args.model, args.weights);
   const motion::PositionFormat& format = model.format();
@@ -189,7 +190,7 @@ int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const
     require(!model.is_baseline() && model.options().attention,
             "--attention-map: this model has no attention");
   std::vector<fs::path> files, inputs;
-  const std::vector<GivenPrior> priors = find_priors(args, verb, file, model, first_label, inputs);
+  std::vector<GivenPrior> priors = find_priors(args, verb, file, model, first_label, inputs);
   Direction wanted;
   DirectOptions direct_options = args.directing.options;
   if (args.directing.on()) {
@@ -203,6 +204,11 @@ int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const
       schedule = parse_action_schedule(args.schedule, format, static_cast<double>(needed) / format.rate);
     }
   }
+  const Share share = share_of(priors.size(), ranks);
+  if (share.count == 0) return 0;
+  const auto mine = priors.begin() + static_cast<std::ptrdiff_t>(share.first);
+  priors = {mine, mine + static_cast<std::ptrdiff_t>(share.count)};
+  args.first_sample += share.first;
   const fs::path out = args.out;
   const std::string name = name_of(format, schedule);
   for (std::size_t i = 0; i < priors.size(); ++i)

@@ -3,6 +3,7 @@
 #include "generate/directing.hpp"
 #include "shared/action_data.hpp"
 #include "shared/cleaning.hpp"
+#include "shared/ranks.hpp"
 #include "shared/retargeting.hpp"
 #include "shared/weights.hpp"
 
@@ -32,7 +33,8 @@ void add_action_options(CLI::App& verb, ActionGenerateArgs& args);
 /// The names of those options that the command line gives, separated by commas.
 std::string given_action_options(const CLI::App& verb);
 
-/// Generates with the class-conditioned model in `file`. Returns the exit status.
-int generate_actions(const ActionGenerateArgs& args, const CLI::App& verb, const fs::path& file);
+/// Generates with the class-conditioned model in `file`, a rank's share of it. Returns the exit status.
+int generate_actions(ActionGenerateArgs args, const CLI::App& verb, const fs::path& file,
+                     const Communicator* ranks);
 
 }  // namespace motiongan::command

@@ -3,7 +3,7 @@
 #include "motiongan/train/progress.hpp"
 #include "shared/shell.hpp"
 #include "shared/signals.hpp"
-#include "train/ranks.hpp"
+#include "shared/ranks.hpp"
 
 namespace motiongan::command {
 

@@ -64,6 +64,36 @@ TEST_CASE("mpirun: the same bits with 1, 2 and 4 processes, and other options ar
   CHECK_MESSAGE(said.has("rank 1 was started with another training than rank 0: \"training\" is"), said.text);
 }
 
+TEST_CASE("mpirun: generate shares the motions, and writes the files that one process writes") {
+  if (!has_mpi()) return;
+  const TestFolder folder;
+  REQUIRE(call("synth clips --clips 6 --seconds 5").status == 0);
+  REQUIRE(call(training + "--save text --iterations 1").status == 0);
+  REQUIRE(
+      call("train attention --procedural 51 --save classes --iterations 1 --frames 8 --rate 10 --hidden 8 "
+           "--batch 4 --critic-steps 1 --noise 4 --classes walk,run")
+          .status == 0);
+  for (const char* what : {"text --text walk --text run --count 5 --first-sample 2",
+                           "classes --class walk --seconds 2 --count 3"}) {
+    CAPTURE(what);
+    fs::remove_all("one");
+    fs::remove_all("three");
+    REQUIRE(call(std::string("generate ") + what + " --out one").status == 0);
+    const Said said = shell(on_ranks(3, std::string("generate ") + what + " --out three"));
+    CHECK_MESSAGE(said.status == 0, said.text);
+    std::size_t files = 0;
+    for (const auto& entry : fs::directory_iterator("one")) {
+      CHECK(bytes_of(entry.path()) == bytes_of("three" / entry.path().filename()));
+      ++files;
+    }
+    CHECK(files ==
+          static_cast<std::size_t>(std::distance(fs::directory_iterator("three"), fs::directory_iterator())));
+  }
+  const Said page = shell(on_ranks(2, "generate text --text walk --html page.html"));
+  CHECK(page.status != 0);
+  CHECK_MESSAGE(page.has("--html needs all motions in one process"), page.text);
+}
+
 TEST_CASE("mpirun: a rank is killed; the job ends, and goes on with another number of ranks") {
   if (!has_mpi()) return;
   const TestFolder folder;

@@ -1,5 +1,5 @@
-// The other processes of a training: those of an MPI job. Compiled by itself, for the sake of MPI's header.
-#include "train/ranks.hpp"
+// The other processes of a job, by MPI. Compiled by itself, for the sake of MPI's header.
+#include "shared/ranks.hpp"
 
 #include <cstdio>
 #include <cstdlib>
@@ -31,6 +31,22 @@ std::shared_ptr<Communicator> join_ranks() {
       "mpirun started several processes, but this motiongan was built without MPI; on Debian: apt-get "
       "install libopenmpi-dev, and build it again");
 #endif
+}
+
+Share share_of(std::size_t count, const Communicator* ranks) {
+  if (ranks == nullptr) return {0, count};
+  const std::size_t first = count * ranks->rank() / ranks->size(),
+                    end = count * (ranks->rank() + 1) / ranks->size();
+  return {first, end - first};
+}
+
+void need_one_rank(const Communicator* ranks, const CLI::App& verb,
+                   std::initializer_list<const char*> options) {
+  if (ranks == nullptr) return;
+  for (const char* const option : options)
+    require(verb.count(option) == 0, option,
+            " needs all motions in one process; without mpirun, or look at the "
+            "files afterwards: motiongan view");
 }
 
 }  // namespace motiongan::command
