@@ -1,9 +1,9 @@
 #include "train/run_start.hpp"
 
 #include "motiongan/train/progress.hpp"
+#include "shared/ranks.hpp"
 #include "shared/shell.hpp"
 #include "shared/signals.hpp"
-#include "shared/ranks.hpp"
 
 namespace motiongan::command {
 

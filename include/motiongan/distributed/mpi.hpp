@@ -29,7 +29,8 @@ class MpiRanks : public Communicator {
   MpiRanks(const MpiRanks&) = delete;
   MpiRanks& operator=(const MpiRanks&) = delete;
   ~MpiRanks() override {
-    // While something fails, other ranks wait for what this one will not send: ending MPI would wait for them.
+    // While something fails, other ranks wait for what this one will not send: ending MPI would wait for
+    // them.
     if (whole_ && std::uncaught_exceptions() == 0) MPI_Finalize();
   }
 

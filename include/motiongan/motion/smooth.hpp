@@ -1,5 +1,6 @@
 // Low-pass filters over time that do not delay: of numbers, and of the rotations of a motion.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>

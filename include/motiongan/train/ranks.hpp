@@ -29,12 +29,12 @@ inline void require_same_training(const Trainer& trainer, Communicator& ranks) {
   own.metadata["shards"] = std::to_string(trainer.parallel().shards);
   own.metadata["iterations"] = std::to_string(trainer.iterations());
   std::string first, different;  // lines `key <TAB> value`
-  for (const auto& [key, text] : own.metadata) first += key + '\t' + text + '\n';
+  for (const auto& [key, text] : own.metadata) first += concat(key, '\t', text, '\n');
   first = broadcast_text(ranks, std::move(first));
   for (const auto& [key, text] : own.metadata) {
-    const std::string line = key + '\t' + text + '\n';
+    const std::string line = concat(key, '\t', text, '\n');
     if (!different.empty() || first.find(line) != first.npos) continue;
-    const std::size_t at = first.find(key + '\t');
+    const std::size_t at = first.find(concat(key, '\t'));
     different =
         concat("rank ", ranks.rank(), " was started with another training than rank 0: \"", key, "\" is ",
                text.substr(0, 500), ", there ",
