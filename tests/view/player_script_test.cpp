@@ -97,7 +97,8 @@ TEST_CASE("only figures in sight are drawn") {
   if (!has_node()) return;
   const std::string said = run_page(std::vector(1000, test::walker(4)));
   CAPTURE(said);
-  CHECK(said.starts_with("clips=1000 before=0 appearing=3 three=3 one=1 "));
+  // Node.js may have warned of something else before.
+  CHECK(said.find("clips=1000 before=0 appearing=3 three=3 one=1 ") != std::string::npos);
   CHECK(said.ends_with(" bad=0\n"));
 }
 
