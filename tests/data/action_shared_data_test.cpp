@@ -21,7 +21,7 @@ fs::path shared_data(const char* name) {
   const char* set = std::getenv("MOTIONGAN_SHARED");
   const fs::path shared = set ? fs::path(set) : fs::path(MOTIONGAN_SOURCE_DIR) / ".." / "shared";
   if (fs::is_directory(shared / "data" / name)) return shared / "data" / name;
-  MESSAGE("skipped: no data/" << name << " in " << shared.string());
+  MESSAGE("skipped: no data/" << std::string(name) << " in " << shared.string());
   return {};
 }
 
