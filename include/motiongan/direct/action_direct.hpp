@@ -106,6 +106,7 @@ class ActionDirector {
  private:
   static constexpr std::size_t steps_together = 4;  // seconds that are searched for at once
 
+  /// Of positions [frames, joints] from frame `first` on.
   std::vector<ConstraintError> errors_of(const std::vector<motion::Vec3>& positions,
                                          const motion::Skeleton& skeleton,
                                          const std::vector<Constraint>& constraints,
@@ -128,13 +129,13 @@ class ActionDirector {
     return out;
   }
 
-  void direct_steps(const SearchWindow& window, std::size_t step, const std::vector<ActionStep>& steps) {
+  void direct_steps(const SearchWindow& window, std::size_t step, const ActionSchedule& steps) {
     const Context& context = model_.context();
     const std::size_t tasks = tasks_.size(), starts = options_.starts, batch = tasks * starts,
                       dof = format_.dof(), second = format_.frames;
     const std::size_t first = made_.front().clip.frames - second;  // of the last frame that is known
     std::size_t frames = 1;
-    for (const ActionStep& s : steps) frames += s.frames;
+    for (const ActionPiece& s : steps) frames += s.frames;
     DirectObjective objective(context, format_, frames, batch, first);
     std::vector<std::vector<Constraint>> asked;
     std::vector<std::vector<float>> priors;
@@ -183,7 +184,7 @@ class ActionDirector {
   /// The critic's mean score of the seconds that were made whole, [samples]; empty without a critic, or
   /// without such a second.
   std::vector<float> scores_of(const NoiseSearch& search, const std::vector<std::vector<float>>& priors,
-                               const std::vector<ActionStep>& steps) const {
+                               const ActionSchedule& steps) const {
     if (!options_.score_pairs) return {};
     const Context& context = model_.context();
     const NoGrad values_only;
@@ -194,7 +195,7 @@ class ActionDirector {
     const Var motion = batch_of(context, all, format_.dof());
     std::vector<float> out;
     std::size_t at = 0;
-    for (const ActionStep& step : steps) {
+    for (const ActionPiece& step : steps) {
       if (step.frames == format_.frames) {
         const std::vector<std::size_t> labels(all.size(), step.label);
         const std::vector<float> own =
@@ -222,7 +223,7 @@ class ActionDirector {
   DirectedBody body_;
   const std::vector<ActionDirectTask>& tasks_;
   const DirectOptions& options_;
-  std::vector<ActionStep> steps_;
+  ActionSchedule steps_;
   double seconds_ = 0;
   // So far, for each task: the motion, its normalised poses, and where the root's track has got to.
   std::vector<DirectedAction> made_;

@@ -3,25 +3,9 @@
 #include <vector>
 
 #include "motiongan/direct/noise.hpp"
-#include "motiongan/models/action_gan.hpp"
+#include "motiongan/sample/action_generate.hpp"
 
 namespace motiongan {
-
-/// A call of a class-conditioned generator: the class, and how many of the T frames are kept.
-struct ActionStep {
-  std::size_t label = 0, frames = 0;
-};
-
-/// The calls that make a schedule of classes, as ActionGan::generate() makes them.
-inline std::vector<ActionStep> steps_of(const ActionSchedule& schedule, std::size_t most_frames) {
-  std::vector<ActionStep> out;
-  for (const ActionPiece& piece : schedule)
-    for (std::size_t left = piece.frames; left > 0;) {
-      out.push_back({piece.label, std::min(left, most_frames)});
-      left -= out.back().frames;
-    }
-  return out;
-}
 
 /// What is free in a batch of motions that continue priors: the noise of every step, if the model takes
 /// noise, which only turns (see NoiseVariable), and its class. The class that is asked for keeps half of the
@@ -29,9 +13,10 @@ inline std::vector<ActionStep> steps_of(const ActionSchedule& schedule, std::siz
 /// one-hot class, a generator sees (1 - S / (2 + 2 S)) e + u^2 / (2 + 2 S).
 class ActionNoise {
  public:
-  /// Motions that continue `prior` [T, B, dof] for `steps`, of which the first is number key.first_frame of
-  /// its motion. Noise is drawn as ActionStream does, for samples key.first_sample and following.
-  ActionNoise(const ActionGan& model, std::vector<ActionStep> steps, Var prior, const RandomKey& key)
+  /// Motions that continue `prior` [T, B, dof] for steps_of() a schedule, of which the first is number
+  /// key.first_frame of its motion. Noise is drawn as ActionStream does, for samples key.first_sample and
+  /// following.
+  ActionNoise(const ActionGan& model, ActionSchedule steps, Var prior, const RandomKey& key)
       : model_(model), steps_(std::move(steps)), prior_(std::move(prior)) {
     const Context& context = model.context();
     const std::size_t batch = prior_.dim(1), classes = model.format().classes.size();
@@ -94,7 +79,7 @@ class ActionNoise {
   }
 
   const ActionGan& model_;
-  std::vector<ActionStep> steps_;
+  ActionSchedule steps_;
   Var prior_;
   detail::TurningVectors noise_;
   Var asked_;    // [steps * B, Y], one-hot

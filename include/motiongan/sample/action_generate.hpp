@@ -5,6 +5,15 @@
 
 namespace motiongan {
 
+/// The schedule in pieces of at most `most` frames each, as a model makes them.
+inline ActionSchedule steps_of(const ActionSchedule& schedule, std::size_t most) {
+  ActionSchedule out;
+  for (const ActionPiece& piece : schedule)
+    for (std::size_t left = piece.frames; left > 0; left -= out.back().frames)
+      out.push_back({piece.label, std::min(left, most)});
+  return out;
+}
+
 inline std::vector<motion::PositionClip> ActionGan::generate(const std::vector<ActionPrior>& priors,
                                                              const ActionSchedule& schedule,
                                                              const ActionGenerateOptions& options) const {
@@ -22,17 +31,13 @@ inline std::vector<motion::PositionClip> ActionGan::generate(const std::vector<A
     if (options.with_prior) clips.back().frames = format_.frames, clips.back().positions = prior.positions;
   }
   const std::vector<ActionStream::Id> ids = stream.add(characters);
-  for (const ActionPiece& piece : schedule) {
+  for (const ActionPiece& piece : steps_of(schedule, format_.frames)) {
     for (const ActionStream::Id id : ids) stream.set_class(id, piece.label);
-    for (std::size_t left = piece.frames; left > 0;) {
-      const std::size_t frames = std::min(left, format_.frames);
-      stream.step(frames);
-      left -= frames;
-      for (std::size_t i = 0; i < ids.size(); ++i) {
-        const motion::PositionClip made = stream.clip(ids[i]);
-        clips[i].frames += made.frames;
-        clips[i].positions.insert(clips[i].positions.end(), made.positions.begin(), made.positions.end());
-      }
+    stream.step(piece.frames);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      const motion::PositionClip made = stream.clip(ids[i]);
+      clips[i].frames += made.frames;
+      clips[i].positions.insert(clips[i].positions.end(), made.positions.begin(), made.positions.end());
     }
   }
   return clips;
