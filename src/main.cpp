@@ -11,7 +11,7 @@
 
 int main(int argc, char** argv) {
   using namespace motiongan::command;
-  open_standard_streams();
+  motiongan::os::open_standard_streams();
   // Line-buffered, so that stdout and the progress on stderr keep their order when both go to one file.
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   if (argc > 0 && *argv[0] != '\0') program() = shell_word(argv[0]);

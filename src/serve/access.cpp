@@ -1,13 +1,11 @@
 #include "serve/access.hpp"
 
-#include <sys/random.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
 
 #include "motiongan/core/error.hpp"
+#include "motiongan/core/os.hpp"
 
 namespace motiongan::command {
 
@@ -20,8 +18,7 @@ bool equal_in_constant_time(std::string_view a, std::string_view b) {
 
 std::string random_name() {
   std::array<unsigned char, 16> bytes{};
-  require(::getrandom(bytes.data(), bytes.size(), 0) == static_cast<ssize_t>(bytes.size()),
-          "the operating system gives no random numbers");
+  require(os::random_bytes(bytes), "the operating system gives no random numbers");
   constexpr std::string_view digits = "0123456789abcdef";
   std::string out;
   for (const unsigned char byte : bytes) out += digits[byte >> 4], out += digits[byte & 15u];
@@ -35,8 +32,7 @@ namespace {
 /// An address as it is written in a URL: those of IPv6 in brackets. For all addresses, the machine's name.
 std::string in_url(const std::string& host) {
   if (host == "0.0.0.0" || host == "::") {
-    std::array<char, 256> name{};
-    if (::gethostname(name.data(), name.size() - 1) == 0 && name[0] != '\0') return name.data();
+    if (const std::string name = os::host_name(); !name.empty()) return name;
   }
   return host.find(':') != host.npos ? "[" + host + "]" : host;
 }

@@ -1,15 +1,14 @@
 #include "serve/http.hpp"
 
 #include "motiongan/core/error.hpp"
+#include "motiongan/core/os.hpp"
 
 #ifdef MOTIONGAN_HTTPLIB
 #include <httplib.h>
-#include <pthread.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <csignal>
 #include <exception>
 #include <thread>
 #endif
@@ -84,10 +83,7 @@ void route_all(httplib::Server& server, const HttpHandler& handler) {
 void serve_http(const std::string& host, int port, const HttpHandler& handler,
                 const std::function<void(int port)>& listens, const std::function<bool()>& go_on) {
   // A client that is gone is no reason to stop: writing to it then fails, without a signal.
-  sigset_t pipe;
-  sigemptyset(&pipe);
-  sigaddset(&pipe, SIGPIPE);
-  pthread_sigmask(SIG_BLOCK, &pipe, nullptr);
+  os::block_broken_pipe_signal();
 
   httplib::Server server;
   server.new_task_queue = [] { return new httplib::ThreadPool(threads); };

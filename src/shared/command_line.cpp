@@ -1,7 +1,8 @@
 #include "shared/command_line.hpp"
 
 #include <algorithm>
-#include <cstdlib>
+
+#include "motiongan/core/os.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -43,7 +44,7 @@ CommandLine::CommandLine(std::ostream& out, std::ostream& err) : out_(out), err_
   app_.add_option_function<std::string>(
           "--device",
           [](const std::string& wish) {
-            require(setenv("MOTIONGAN_DEVICE", wish.c_str(), 1) == 0, "cannot set MOTIONGAN_DEVICE");
+            require(os::set_environment("MOTIONGAN_DEVICE", wish), "cannot set MOTIONGAN_DEVICE");
           },
           "OpenCL device: cpu, gpu, part of its name, or NAME:index (overrides MOTIONGAN_DEVICE; see "
           "`motiongan devices`)")

@@ -1,8 +1,5 @@
 #include "shared/signals.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -13,6 +10,7 @@
 #include <iterator>
 
 #include "motiongan/core/error.hpp"
+#include "motiongan/core/os.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -22,16 +20,6 @@ constexpr int stop_signals[]{SIGINT, SIGTERM, SIGHUP};
 std::atomic<int> signal_number = 0;
 volatile std::sig_atomic_t takes_signal[std::size(stop_signals)];
 
-/// The second signal of any kind ends the process at once. Two may come at the same time, in two threads.
-void end_by(int number) {
-  sigset_t only;
-  sigemptyset(&only);
-  sigaddset(&only, number);
-  std::signal(number, SIG_DFL);
-  pthread_sigmask(SIG_UNBLOCK, &only, nullptr);
-  std::raise(number);
-}
-
 extern "C" void take_signal(int number) {
   int none = 0;
   if (signal_number.compare_exchange_strong(none, number)) {
@@ -39,38 +27,22 @@ extern "C" void take_signal(int number) {
       if (takes_signal[i]) std::signal(stop_signals[i], SIG_DFL);
     std::signal(SIGPIPE, SIG_IGN);
   } else if (number != SIGPIPE) {  // what is printed while the run is saved must not prevent that
-    end_by(number);
+    // The second signal of any kind ends the process at once. Two may come at the same time, in two threads.
+    os::end_by_signal(number);
   }
-}
-
-bool is_ignored(int number) {
-  struct sigaction now {};
-  return ::sigaction(number, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
 }
 
 /// The stop signals that were ignored when the program started. Asked before main(): the compiler of an
 /// OpenCL driver sets handlers of its own.
 const std::array<bool, std::size(stop_signals)> ignored_at_start = [] {
   std::array<bool, std::size(stop_signals)> out{};
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = is_ignored(stop_signals[i]);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = os::is_signal_ignored(stop_signals[i]);
   return out;
 }();
-const bool pipe_ignored_at_start = is_ignored(SIGPIPE);
+const bool pipe_ignored_at_start = os::is_signal_ignored(SIGPIPE);
 
-bool take(int number) {
-  struct sigaction wanted {};
-  wanted.sa_handler = take_signal;
-  wanted.sa_flags = SA_RESTART;
-  // In the same thread a second signal waits until the handler of the first has ended.
-  sigemptyset(&wanted.sa_mask);
-  for (const int other : stop_signals) sigaddset(&wanted.sa_mask, other);
-  return ::sigaction(number, &wanted, nullptr) == 0;
-}
-
-bool handler_is_ours(int number) {
-  struct sigaction now {};
-  return ::sigaction(number, nullptr, &now) == 0 && now.sa_handler == take_signal;
-}
+/// In the same thread a second signal waits until the handler of the first has ended.
+bool take(int number) { return os::set_signal_handler(number, take_signal, stop_signals); }
 
 }  // namespace
 
@@ -85,19 +57,13 @@ bool stop_requested() {
   // The compiler of an OpenCL driver may have set its handlers since: kernels are built when first used.
   for (std::size_t i = 0; i < std::size(stop_signals) && signal_number == 0; ++i)
     if (takes_signal[i]) {
-      if (!handler_is_ours(stop_signals[i])) catch_signals();
+      if (!os::is_signal_handler(stop_signals[i], take_signal)) catch_signals();
       break;
     }
   return signal_number != 0;
 }
 
 int caught_signal() { return signal_number; }
-
-void open_standard_streams() {
-  for (int stream = 0; stream <= 2; ++stream)
-    // The lowest free descriptor is the closed one.
-    if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF && ::open("/dev/null", O_RDWR) < 0) return;
-}
 
 void flush_output() {
   std::cout.flush();

@@ -1,4 +1,4 @@
-// Signals as requests to stop at the next safe point, and the standard streams.
+// Signals as requests to stop at the next safe point, and standard output.
 #pragma once
 
 namespace motiongan::command {
@@ -13,10 +13,6 @@ bool stop_requested();
 
 /// The signal that requested a stop, or 0.
 int caught_signal();
-
-/// Opens /dev/null in place of standard streams that are closed: the next file to be opened would take their
-/// place, and get what is printed.
-void open_standard_streams();
 
 /// Writes out what was printed. Throws Error if standard output cannot take it (a full disk).
 void flush_output();

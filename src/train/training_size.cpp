@@ -1,9 +1,8 @@
 #include "train/training_size.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <fstream>
+
+#include "motiongan/core/os.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -20,21 +19,6 @@ std::string count_text(std::size_t count) {
   const bool billions = count >= 1'000'000'000;
   return concat(brief(static_cast<double>(count) / (billions ? 1e9 : 1e6)),
                 billions ? " billion" : " million");
-}
-
-/// The value of a line of a file in /proc such as "MemAvailable:   123 kB", in bytes; 0 if there is none.
-double proc_bytes(const char* file, std::string_view name) {
-  std::ifstream in(file);
-  for (std::string line; std::getline(in, line);)
-    if (line.starts_with(name)) return 1024 * std::strtod(line.c_str() + name.size(), nullptr);
-  return 0;
-}
-
-/// Host memory that can still be had; that of the whole machine where the system does not say.
-double host_memory() {
-  const double free = proc_bytes("/proc/meminfo", "MemAvailable:") + proc_bytes("/proc/meminfo", "SwapFree:");
-  if (free > 0) return free;
-  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
 /// What a training adds to the process. A CPU device's memory is that of the host.
@@ -72,7 +56,7 @@ void require_fits(const Context& context, const TrainingCost& cost, bool on_devi
   require(on_device, need, " on the device, ", size_text(cost.largest_buffer), " of it in one buffer; ",
           device.name, " has ", limit_text(context), ", and at most ", size_text(largest), " for a buffer",
           advice);
-  const double host = host_need(context, cost), there = host_memory();
+  const double host = host_need(context, cost), there = os::available_memory();
   require(host <= there, need, " on the device and about ", size_text(host), " of host memory",
           device.is_cpu() ? ", which includes that of the device, the CPU" : "", "; ", size_text(there),
           " of it is free", advice);
@@ -84,8 +68,9 @@ void print_cost(const Context& context, const TrainingCost& cost) {
                                  size_text(static_cast<double>(count * context.real_size()))));
   print_fact("device", concat("about ", size_text(cost.device_bytes), " of ", limit_text(context),
                               ", at least ", size_text(cost.device_in_use)));
-  print_fact("host", concat("about ", size_text(host_need(context, cost)), " of ", size_text(host_memory()),
-                            context.device().is_cpu() ? ", with that of the device, which is the CPU" : ""));
+  print_fact("host",
+             concat("about ", size_text(host_need(context, cost)), " of ", size_text(os::available_memory()),
+                    context.device().is_cpu() ? ", with that of the device, which is the CPU" : ""));
   print_fact("work", fmt::format("{:.3g} operations in matrix products an iteration", cost.flops));
 }
 

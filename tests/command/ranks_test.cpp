@@ -21,6 +21,7 @@ bool has_mpi() {
     MESSAGE("skipped: there is no mpirun; on Debian: apt-get install openmpi-bin libopenmpi-dev");
     return false;
   }
+  const TestFolder folder;
   if (!shell(on_ranks(2, "train dvgan none --save none")).has("without MPI")) return true;
   MESSAGE("skipped: the command was built without MPI");
   return false;

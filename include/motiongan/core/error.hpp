@@ -11,6 +11,10 @@
 
 namespace motiongan {
 
+// Here, because every header includes this one.
+static_assert(sizeof(std::size_t) >= 8,
+              "motiongan needs a 64-bit platform: the sizes of tensors and files do not fit a 32-bit size_t");
+
 namespace detail {
 
 /// One part of a message, type-erased, so that formatting is compiled once and not for every list of argument

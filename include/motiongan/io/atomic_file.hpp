@@ -1,9 +1,5 @@
 // Atomic file writes: the complete file appears, or nothing changes.
 #pragma once
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
@@ -13,6 +9,7 @@
 #include <utility>
 
 #include "motiongan/core/error.hpp"
+#include "motiongan/core/os.hpp"
 
 namespace motiongan::io {
 
@@ -22,19 +19,16 @@ namespace motiongan::io {
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path path) : path_(std::move(path)), beside_(path_) {
-    struct stat found {};
-    // Not all of /dev: /dev/shm is a folder of ordinary files.
-    direct_ = path_.parent_path() == "/dev" || path_.parent_path() == "/dev/fd" ||
-              (::stat(path_.c_str(), &found) == 0 && !S_ISREG(found.st_mode) && !S_ISDIR(found.st_mode));
+    direct_ = os::is_special(path_);
     if (direct_) {
-      file_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+      file_ = os::open_to_write(path_);
     } else {
       // Never an existing file and never through a link, so that nobody can plant one. Files that a killed
       // process left, and other hosts' processes of the same number, have taken some names.
       for (int n = 0; n < 1000 && (n == 0 || (file_ < 0 && errno == EEXIST)); ++n) {
         beside_ = path_;
-        beside_ += concat(".", ::getpid(), "-", n, ".tmp");
-        file_ = ::open(beside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+        beside_ += concat(".", os::process_id(), "-", n, ".tmp");
+        file_ = os::create_file(beside_);
       }
     }
     check(file_ >= 0, "open");
@@ -43,20 +37,11 @@ class AtomicFile {
   AtomicFile& operator=(const AtomicFile&) = delete;
   ~AtomicFile() {
     if (file_ < 0) return;
-    ::close(file_);
+    os::close_file(file_);
     remove();
   }
 
-  void write(const void* bytes, std::size_t size) {
-    const char* at = static_cast<const char*>(bytes);
-    while (size > 0) {
-      const ssize_t n = ::write(file_, at, size);
-      if (n < 0 && errno == EINTR) continue;
-      check(n > 0, "write");
-      at += n;
-      size -= static_cast<std::size_t>(n);
-    }
-  }
+  void write(const void* bytes, std::size_t size) { check(os::write_all(file_, bytes, size), "write"); }
   void write(std::string_view text) { write(text.data(), text.size()); }
 
   /// Whether commit() waits until the file is on disk: for files whose loss matters after a power cut.
@@ -65,28 +50,21 @@ class AtomicFile {
   /// Renames the file into place: from now on it is at `path`.
   void commit(Sync sync = Sync::yes) {
     if (sync == Sync::yes) flush();
-    const int file = std::exchange(file_, -1);
-    const bool closed = ::close(file) == 0;
-    const bool renamed = closed && (direct_ || ::rename(beside_.c_str(), path_.c_str()) == 0);
+    const bool closed = os::close_file(std::exchange(file_, -1));
+    const bool renamed = closed && (direct_ || os::replace_file(beside_, path_));
     if (!renamed) {
       const int error = errno;
       remove();
       errno = error;
       check(false, closed ? "rename into place" : "close");
     }
-    // The rename is durable only once the folder is synced; if that fails, the file is still complete.
-    if (sync == Sync::no || direct_) return;
-    const std::filesystem::path folder = path_.has_parent_path() ? path_.parent_path() : ".";
-    const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (handle >= 0) {
-      ::fsync(handle);
-      ::close(handle);
-    }
+    // Should this fail, the file is still complete.
+    if (sync == Sync::yes && !direct_) os::flush_folder(path_.has_parent_path() ? path_.parent_path() : ".");
   }
 
   /// Waits until what was written is on disk; commit() does so too.
   void flush() {
-    if (!direct_) check(::fsync(file_) == 0, "flush");
+    if (!direct_) check(os::flush_to_disk(file_), "flush");
   }
 
  private:
@@ -96,12 +74,12 @@ class AtomicFile {
                   "; does the folder exist, is it writable, and is there free space?");
   }
   void remove() const {
-    if (!direct_) ::unlink(beside_.c_str());
+    if (!direct_) os::remove_file(beside_);
   }
 
   std::filesystem::path path_, beside_;
   bool direct_ = false;
-  int file_ = -1;
+  os::FileHandle file_ = -1;
 };
 
 /// Whether `name` is what AtomicFile calls its file beside `target`: left by a process that was killed.

@@ -1,8 +1,5 @@
 // Progress display of a training run: a bar on a terminal, plain lines at intervals elsewhere.
 #pragma once
-#include <sys/ioctl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -18,6 +15,7 @@
 #include <vector>
 
 #include "motiongan/core/clock.hpp"
+#include "motiongan/core/os.hpp"
 #include "motiongan/train/csv_log.hpp"
 
 namespace motiongan {
@@ -31,7 +29,7 @@ struct ProgressOptions {
   std::FILE* out = stderr;
   double terminal_interval = 0.1;         ///< seconds between redraws on a terminal
   double plain_interval = 10;             ///< seconds between lines elsewhere
-  std::optional<bool> terminal = {};      ///< whether `out` is a terminal; not set: isatty()
+  std::optional<bool> terminal = {};      ///< whether `out` is a terminal; not set: asked of the system
   std::optional<std::size_t> width = {};  ///< columns of the terminal; not set: queried
   double smoothing = 20;                  ///< seconds over which the rate is averaged
   std::function<double()> now = {};       ///< clock in seconds; empty: clock_seconds()
@@ -106,7 +104,7 @@ class ProgressBar {
  public:
   explicit ProgressBar(std::size_t total = 0, ProgressOptions options = {})
       : options_(std::move(options)), total_(total) {
-    terminal_ = options_.terminal.value_or(isatty(fileno(options_.out)) == 1);
+    terminal_ = options_.terminal.value_or(os::is_terminal(options_.out));
   }
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
@@ -168,9 +166,8 @@ class ProgressBar {
   /// Queried at every redraw, because the window may be resized.
   std::size_t width() const {
     if (options_.width) return *options_.width;
-    winsize size{};
-    if (ioctl(fileno(options_.out), TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
-    return 80;
+    const std::size_t columns = os::terminal_width(options_.out);
+    return columns > 0 ? columns : 80;
   }
 
   void clear() {
