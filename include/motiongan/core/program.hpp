@@ -9,6 +9,7 @@
 
 #include "motiongan/core/device.hpp"
 #include "motiongan/core/driver.hpp"
+#include "motiongan/core/kernel_cache.hpp"
 #include "motiongan/generated/kernels.hpp"
 
 namespace motiongan {
@@ -65,7 +66,7 @@ inline std::string kernel_source(std::string_view name) {
 class ProgramCache {
  public:
   ProgramCache(cl_context context, const Device& device, Precision precision, Driver& driver)
-      : context_(context), device_(device), precision_(precision), driver_(driver) {}
+      : context_(context), device_(device), precision_(precision), driver_(driver), kept_(device) {}
 
   /// Elements per vector (VW in the kernels): 4, 8 or 16 on a CPU, by its vector registers, 4 elsewhere.
   unsigned vector_width() const {
@@ -95,6 +96,39 @@ class ProgramCache {
   }
 
   ClProgram build(const std::string& file, const char* source) {
+    if (!kept_) return compiled(file, source);
+    if (ClProgram program = from_binary(kept_.find(options(""), source))) return program;
+    ClProgram program = compiled(file, source);
+    if (const std::string binary = binary_of(program.get()); !binary.empty())
+      kept_.keep(options(""), source, binary);
+    return program;
+  }
+
+  /// A null program if the driver does not take the binary.
+  ClProgram from_binary(const std::string& binary) const {
+    if (binary.empty()) return {};
+    cl_int loaded = CL_SUCCESS, code = CL_SUCCESS;
+    const std::size_t size = binary.size();
+    const auto* bytes = reinterpret_cast<const unsigned char*>(binary.data());
+    ClProgram program(clCreateProgramWithBinary(context_, 1, &device_.id, &size, &bytes, &loaded, &code));
+    if (code != CL_SUCCESS || loaded != CL_SUCCESS) return {};
+    if (clBuildProgram(program.get(), 1, &device_.id, "", nullptr, nullptr) != CL_SUCCESS) return {};
+    return program;
+  }
+
+  /// Empty if the driver does not give it.
+  static std::string binary_of(cl_program program) {
+    std::size_t size = 0;  // of the one device's
+    if (clGetProgramInfo(program, CL_PROGRAM_BINARY_SIZES, sizeof size, &size, nullptr) != CL_SUCCESS)
+      return {};
+    std::string binary(size, '\0');
+    auto* bytes = reinterpret_cast<unsigned char*>(binary.data());
+    if (clGetProgramInfo(program, CL_PROGRAM_BINARIES, sizeof bytes, &bytes, nullptr) != CL_SUCCESS)
+      return {};
+    return binary;
+  }
+
+  ClProgram compiled(const std::string& file, const char* source) {
     cl_int code = CL_SUCCESS;
     ClProgram program(clCreateProgramWithSource(context_, 1, &source, nullptr, &code));
     driver_.check(code, "clCreateProgramWithSource", ": cl/", file, ".cl");
@@ -145,6 +179,7 @@ class ProgramCache {
   Device device_;
   Precision precision_;
   Driver& driver_;
+  KernelCache kept_;
   const char* standard_ = "-cl-std=CL1.2 ";
   std::string key_;
   std::unordered_map<std::string, ClProgram> programs_;
