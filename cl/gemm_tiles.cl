@@ -44,7 +44,7 @@ typedef real4 anywhere4 __attribute__((aligned(REAL_BYTES)));
 #endif
 
 // Rows that lie a few kilobytes apart are not fetched ahead by the processor itself.
-#if defined(DEVICE_IS_CPU) && defined(__clang__)
+#ifdef CAN_PREFETCH
 #define PREFETCH(p) __builtin_prefetch((const void*)(size_t)(p))
 #else
 #define PREFETCH(p)

@@ -38,7 +38,7 @@ void check_near(const std::vector<double>& found, const std::vector<double>& exp
 
 }  // namespace
 
-TEST_CASE("a result requires a gradient if an input does") {
+TEST_CASE("a result requires a gradient if an input does" * doctest::test_suite("double")) {
   const Var x = leaf({1, 2}), c = constant({3, 4});
   CHECK(x.requires_grad());
   CHECK_FALSE(c.requires_grad());
@@ -50,7 +50,7 @@ TEST_CASE("a result requires a gradient if an input does") {
   CHECK((c + c).node()->inputs.empty());
 }
 
-TEST_CASE("NoGrad disables recording within its scope") {
+TEST_CASE("NoGrad disables recording within its scope" * doctest::test_suite("double")) {
   const Var x = leaf({1, 2});
   {
     const NoGrad scope;
@@ -69,7 +69,7 @@ TEST_CASE("NoGrad disables recording within its scope") {
   CHECK((x * x).requires_grad());
 }
 
-TEST_CASE("seeds: ones by default, weights if given, shapes checked") {
+TEST_CASE("seeds: ones by default, weights if given, shapes checked" * doctest::test_suite("double")) {
   const Var x = leaf({1, 2, 3});
   check_near(host(grad(square(x), {x})[0]), {2, 4, 6});
   check_near(host(grad({square(x)}, {constant({1, 10, 100})}, {x})[0]), {2, 40, 600});
@@ -79,14 +79,14 @@ TEST_CASE("seeds: ones by default, weights if given, shapes checked") {
   CHECK_THROWS_WITH_AS(grad({square(x)}, {}, {x}), "grad: 1 outputs but 0 seeds", Error);
 }
 
-TEST_CASE("no gradient with respect to a constant") {
+TEST_CASE("no gradient with respect to a constant" * doctest::test_suite("double")) {
   const Var x = leaf({1}), c = constant({2});
   CHECK_THROWS_AS(grad(x * c, {c}), Error);
   CHECK_THROWS_AS(grad(x * c, {x.detach()}), Error);
   CHECK_THROWS_AS(grad(x * x, {Var()}), Error);
 }
 
-TEST_CASE("an unused input has a zero gradient") {
+TEST_CASE("an unused input has a zero gradient" * doctest::test_suite("double")) {
   const Var x = leaf({1, 2}), unused = leaf({5, 6, 7});
   const std::vector<Var> g = grad(square(x), {x, unused});
   check_near(host(g[0]), {2, 4});
@@ -95,7 +95,7 @@ TEST_CASE("an unused input has a zero gradient") {
   CHECK(host(grad(y, {later})[0]) == std::vector<double>{0, 0});
 }
 
-TEST_CASE("no gradient of a constant") {
+TEST_CASE("no gradient of a constant" * doctest::test_suite("double")) {
   const Var x = leaf({1, 2});
   const auto message = [&](const Var& output) {
     return testing::message_of([&] { grad({square(x), output}, {Var(), Var()}, {x}); });
@@ -114,7 +114,7 @@ TEST_CASE("no gradient of a constant") {
   CHECK_THROWS_AS(grad(Var(), {x}), Error);
 }
 
-TEST_CASE("derivatives of a polynomial past its degree are zero") {
+TEST_CASE("derivatives of a polynomial past its degree are zero" * doctest::test_suite("double")) {
   const Var x = leaf({2, -1}), other = leaf({5});
   std::vector<std::vector<double>> orders;
   Var d = 3 * square(x);
@@ -129,7 +129,7 @@ TEST_CASE("derivatives of a polynomial past its degree are zero") {
   CHECK(host(grad(grad(x * x, {other}, {.create_graph = true})[0], {other})[0]) == std::vector<double>{0});
 }
 
-TEST_CASE("outputs and intermediate values can be inputs") {
+TEST_CASE("outputs and intermediate values can be inputs" * doctest::test_suite("double")) {
   const Var x = leaf({3}), y = square(x), z = square(y);
   CHECK(host(grad(z, {z})[0]) == std::vector<double>{1});
   const std::vector<Var> g = grad(z, {y, x, z});
@@ -138,7 +138,7 @@ TEST_CASE("outputs and intermediate values can be inputs") {
   check_near(host(g[2]), {1});
 }
 
-TEST_CASE("the gradients of a value used several times add up") {
+TEST_CASE("the gradients of a value used several times add up" * doctest::test_suite("double")) {
   const Var x = leaf({2});
   check_near(host(grad(x * x * x, {x})[0]), {12});
   check_near(host(grad(x + x + x, {x})[0]), {3});
@@ -148,7 +148,7 @@ TEST_CASE("the gradients of a value used several times add up") {
   check_near(host(grad(x * x, {x, x})[1]), {4});
 }
 
-TEST_CASE("branches without a requested input are skipped") {
+TEST_CASE("branches without a requested input are skipped" * doctest::test_suite("double")) {
   int left = 0, right = 0;
   const Var a = leaf({1, 2}), b = leaf({3, 4});
   const Var z = watched(square(a), left) * watched(square(b), right);
@@ -177,7 +177,7 @@ TEST_CASE("branches without a requested input are skipped") {
   CHECK(both == 3);  // and g * a
 }
 
-TEST_CASE("the result has a graph only with create_graph") {
+TEST_CASE("the result has a graph only with create_graph" * doctest::test_suite("double")) {
   const Var x = leaf({0.5, -1});
   const Var plain = grad(x * x * x, {x})[0];
   CHECK_FALSE(plain.requires_grad());
@@ -190,7 +190,7 @@ TEST_CASE("the result has a graph only with create_graph") {
   CHECK_FALSE(grad(gradient, {x}, {.create_graph = true})[0].requires_grad());
 }
 
-TEST_CASE("third derivative of x^2 exp(a x)") {
+TEST_CASE("third derivative of x^2 exp(a x)" * doctest::test_suite("double")) {
   const double a = 0.7;
   const std::vector<double> at{-1.3, 0, 0.4, 2};
   const Var x = leaf(at);
@@ -201,14 +201,14 @@ TEST_CASE("third derivative of x^2 exp(a x)") {
   check_near(host(d), expected);
 }
 
-TEST_CASE("mixed derivatives do not depend on the order") {
+TEST_CASE("mixed derivatives do not depend on the order" * doctest::test_suite("double")) {
   const Var x = leaf({0.3, -0.8}), y = leaf({1.1, 0.4});
   const Var f = tanh(x * y) * exp(x - y);
   const Var by_x = grad(f, {x}, {.create_graph = true})[0], by_y = grad(f, {y}, {.create_graph = true})[0];
   check_near(host(grad(by_x, {y})[0]), host(grad(by_y, {x})[0]));
 }
 
-TEST_CASE("an op's derivative of the wrong shape is rejected") {
+TEST_CASE("an op's derivative of the wrong shape is rejected" * doctest::test_suite("double")) {
   const Var x = leaf({1, 2});
   const Var y = record("crooked", {x}, x.value(),
                        [](const Node&, const Var& g, const Needs&) -> std::vector<Var> { return {sum(g)}; });

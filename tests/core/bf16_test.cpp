@@ -6,6 +6,8 @@
 #include <motiongan/core/bf16.hpp>
 #include <random>
 
+#include "../support/precision.hpp"
+
 using namespace motiongan;
 
 namespace {
@@ -32,7 +34,7 @@ TEST_CASE("values become the nearest bfloat16, and stay as they are after that")
     const float value = std::bit_cast<float>((bits & 0xbfff0000u) | 0x8000u);
     values.push_back(value);
   }
-  for (const Precision precision : {Precision::f32, Precision::f64}) {
+  for (const Precision precision : testing::precisions()) {
     const Context context(ContextOptions{.precision = precision});
     const Tensor x = Tensor::from(context, {values.size()}, values);
     round_to_bf16(x);

@@ -5,16 +5,14 @@
 #include <motiongan/core/gemm.hpp>
 #include <random>
 
+#include "../support/precision.hpp"
+
 namespace motiongan::test {
 
 /// Value of the elements around C, which must not change.
 constexpr double sentinel = 12345;
 
-inline Context& context_of(Precision precision) {
-  static Context f32(ContextOptions{.precision = Precision::f32}),
-      f64(ContextOptions{.precision = Precision::f64});
-  return precision == Precision::f32 ? f32 : f64;
-}
+using testing::context_of;
 
 /// A call without its data: the options that a test varies.
 struct Plan {

@@ -56,7 +56,7 @@ Plan random_plan(std::mt19937& random, std::size_t largest) {
 
 TEST_CASE("native: all sizes of one dimension with small others, all transposes") {
   std::mt19937 random(1);
-  for (const Precision precision : {Precision::f32, Precision::f64})
+  for (const Precision precision : testing::precisions())
     for (const std::size_t size : sizes)
       for (int t = 0; t < 4; ++t)
         for (int dimension = 0; dimension < 3; ++dimension) {
@@ -68,13 +68,13 @@ TEST_CASE("native: all sizes of one dimension with small others, all transposes"
 
 TEST_CASE("native: random combinations of all options") {
   std::mt19937 random(2);
-  for (int i = 0; i < 400; ++i)
-    check(i % 2 ? Precision::f32 : Precision::f64, random_plan(random, 257), GemmEngine::native, random);
+  for (const Precision precision : testing::precisions())
+    for (int i = 0; i < 200; ++i) check(precision, random_plan(random, 257), GemmEngine::native, random);
 }
 
 TEST_CASE("native: sums longer than a block, one and several segments") {
   std::mt19937 random(3);
-  for (const Precision precision : {Precision::f32, Precision::f64})
+  for (const Precision precision : testing::precisions())
     for (const std::size_t k : {767, 768, 769, 1600, 2500})
       for (const std::size_t segments : {1, 3})
         for (int t = 0; t < 4; ++t)
@@ -115,8 +115,9 @@ TEST_CASE("CLBlast: transposes, strides, segments, batch, epilogue") {
             engine, random);
   check(Precision::f32, Plan{.m = 5, .n = 9, .k = 7, .segments = 3, .batch = 4, .offset = 2, .bias = true},
         engine, random);
-  check(Precision::f64, Plan{.m = 12, .n = 20, .k = 31, .b_transposed = true, .extra_ld = 2, .relu = true},
-        engine, random);
+  for (const Precision precision : testing::precisions())
+    check(precision, Plan{.m = 12, .n = 20, .k = 31, .b_transposed = true, .extra_ld = 2, .relu = true},
+          engine, random);
 }
 
 TEST_CASE("k = 0: C is the epilogue of its initial value") {
@@ -125,8 +126,9 @@ TEST_CASE("k = 0: C is the epilogue of its initial value") {
     for (const bool accumulate : {false, true}) {
       check(Precision::f32, Plan{.m = 5, .n = 35, .k = 0, .accumulate = accumulate, .bias = true}, engine,
             random);
-      check(Precision::f64, Plan{.m = 5, .n = 35, .k = 0, .segments = 3, .accumulate = accumulate}, engine,
-            random);
+      for (const Precision precision : testing::precisions())
+        check(precision, Plan{.m = 5, .n = 35, .k = 0, .segments = 3, .accumulate = accumulate}, engine,
+              random);
     }
   const Context& context = context_of(Precision::f32);
   GemmCall call{.m = 2, .n = 3, .k = 0, .c = Tensor(context, {2, 3}), .c_ld = 3};
@@ -142,7 +144,7 @@ TEST_CASE("empty C: nothing is written") {
 
 TEST_CASE("a row's bits do not depend on the rows around it, the columns beside it, or the batch") {
   std::mt19937 random(7);
-  for (const Precision precision : {Precision::f32, Precision::f64}) {
+  for (const Precision precision : testing::precisions()) {
     const Context& context = context_of(precision);
     for (const std::size_t k : {37, 512, 1700})
       for (int t = 0; t < 4; ++t) {
@@ -279,14 +281,14 @@ TEST_CASE("invalid arguments are rejected, with the sizes") {
   refused([](GemmCall& g) { g.batch = 2, g.c_batch_stride = 20; }, "C (4 rows of 5");
   refused([&](GemmCall& g) { g.bias = Tensor(context, {4}); }, "bias has shape [4]");
   refused([&](GemmCall& g) { g.residual = Tensor(context, {4, 5}), g.residual_ld = 6; }, "residual");
-  refused([](GemmCall& g) { g.c = Tensor(context_of(Precision::f64), {4, 5}); }, "another context");
+  refused([](GemmCall& g) { g.c = Tensor(Context(), {4, 5}); }, "another context");
 }
 
 }  // namespace
 
 TEST_CASE("packing B changes no bit, whatever the size, and nothing around C") {
   std::mt19937 random(11);
-  for (const Precision precision : {Precision::f32, Precision::f64}) {
+  for (const Precision precision : testing::precisions()) {
     const Context& context = context_of(precision);
     for (int i = 0; i < 150; ++i) {
       Plan plan = random_plan(random, 257);
@@ -316,7 +318,7 @@ TEST_CASE("packing B changes no bit, whatever the size, and nothing around C") {
 
 TEST_CASE("the extra ReLU output of C, packed or not, on either engine, and nothing around it") {
   std::mt19937 random(13);
-  for (const Precision precision : {Precision::f32, Precision::f64}) {
+  for (const Precision precision : testing::precisions()) {
     const Context& context = context_of(precision);
     for (const std::size_t m : {1u, 30u, 131u})
       for (const std::size_t n : {1u, 19u, 32u, 256u, 1001u})
@@ -341,7 +343,7 @@ TEST_CASE("the extra ReLU output of C, packed or not, on either engine, and noth
 
 TEST_CASE("native: a transposed A with long rows, which is transposed first") {
   std::mt19937 random(12);
-  for (const Precision precision : {Precision::f32, Precision::f64})
+  for (const Precision precision : testing::precisions())
     for (const std::size_t m : {64u, 101u, 600u}) {
       Plan plan{.m = m, .n = 65, .k = 300, .a_transposed = true, .extra_ld = 513, .offset = 3};
       check(precision, plan, GemmEngine::native, random);

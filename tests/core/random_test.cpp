@@ -67,7 +67,7 @@ TEST_CASE("integers are uniformly distributed") {
   for (int count : counts) CHECK(std::abs(count - 10'000) < 475);  // 5 standard deviations
 }
 
-TEST_CASE("normal values follow the definition, in float and double") {
+TEST_CASE("normal values follow the definition, in float and double" * doctest::test_suite("double")) {
   const RandomKey key{
       .seed = 99, .stream = RandomStream::noise + 3, .step = 12, .first_sample = 40, .first_frame = 7};
   const Context doubles({.precision = Precision::f64});

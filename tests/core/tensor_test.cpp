@@ -17,7 +17,7 @@ std::vector<double> counting(std::size_t n, double first = 0) {
 
 }  // namespace
 
-TEST_CASE("round trips in either precision and from either type") {
+TEST_CASE("round trips in either precision and from either type" * doctest::test_suite("double")) {
   const std::vector<double> fine{0.1, -1e-30, 3e30, 1.0 / 3};
   std::vector<float> coarse(fine.begin(), fine.end());
   const Context floats, doubles({.precision = Precision::f64});

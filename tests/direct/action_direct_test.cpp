@@ -88,7 +88,7 @@ double apart(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 
 }  // namespace
 
-TEST_CASE("places in the world are those that the format decodes") {
+TEST_CASE("places in the world are those that the format decodes" * doctest::test_suite("double")) {
   const PlaceView view(double_context(), format());
   const std::size_t joints = format().skeleton().size(), dof = format().dof(), frames = 6;
   // What no real body does: turned against its track.
@@ -124,7 +124,8 @@ TEST_CASE("places in the world are those that the format decodes") {
           {randn({3, 2, dof})}, 2) < 1e-6);
 }
 
-TEST_CASE("a motion of positions meets what is taken from it, and another does not") {
+TEST_CASE("a motion of positions meets what is taken from it, and another does not" *
+          doctest::test_suite("double")) {
   const Placed from;
   const Var own = Var::constant(Tensor::from(double_context(), {6, 1, format().dof()}, from.own.poses));
   const ActionPrior other = placed_at(prior(2), {from.anchor.x + leg(), from.anchor.z, 2, true});
@@ -138,7 +139,7 @@ TEST_CASE("a motion of positions meets what is taken from it, and another does n
   }
 }
 
-TEST_CASE("first and second derivatives of the constraints on positions") {
+TEST_CASE("first and second derivatives of the constraints on positions" * doctest::test_suite("double")) {
   const Placed from;
   std::vector<Constraint> all = from.met();
   all.push_back(LoopConstraint{});

@@ -54,7 +54,7 @@ Var loss_of(const Placed& from, const std::vector<Constraint>& constraints, cons
 
 }  // namespace
 
-TEST_CASE("a motion meets what is taken from it, and a moved one does not") {
+TEST_CASE("a motion meets what is taken from it, and a moved one does not" * doctest::test_suite("double")) {
   for (const RootRotation form : root_forms) {
     CAPTURE(static_cast<int>(form));
     const Placed from(form);
@@ -78,7 +78,8 @@ TEST_CASE("a motion meets what is taken from it, and a moved one does not") {
   }
 }
 
-TEST_CASE("the loss of a pose is its squared error in legs, whatever the batch") {
+TEST_CASE("the loss of a pose is its squared error in legs, whatever the batch" *
+          doctest::test_suite("double")) {
   const Placed from(RootRotation::support);
   const double leg = motion::body_unit(from.motion.skeleton);
   const std::vector<Constraint> pose{PoseConstraint{.time = 0.6, .pose = slice(from.motion, 5, 1)}};
@@ -90,7 +91,7 @@ TEST_CASE("the loss of a pose is its squared error in legs, whatever the batch")
         doctest::Approx(loss_of(from, pose, one).item() + loss_of(from, pose, other).item()));
 }
 
-TEST_CASE("first and second derivatives of every constraint") {
+TEST_CASE("first and second derivatives of every constraint" * doctest::test_suite("double")) {
   for (const RootRotation form : {RootRotation::expmap, RootRotation::heading, RootRotation::support}) {
     const Placed from(form);
     std::vector<Constraint> all = from.met();
@@ -108,7 +109,7 @@ TEST_CASE("first and second derivatives of every constraint") {
   }
 }
 
-TEST_CASE("a loop compares its ends and the movement there") {
+TEST_CASE("a loop compares its ends and the movement there" * doctest::test_suite("double")) {
   const Placed from(RootRotation::support);
   const Var own = Var::constant(windows_of(from.data, double_context(), 1));
   const double whole = loss_of(from, {LoopConstraint{}}, own).item();
@@ -126,7 +127,7 @@ TEST_CASE("a loop compares its ends and the movement there") {
             .item() < 1e-9);
 }
 
-TEST_CASE("samples of a batch have loops of their own") {
+TEST_CASE("samples of a batch have loops of their own" * doctest::test_suite("double")) {
   const Placed from(RootRotation::support);
   const Var two = Var::constant(windows_of(from.data, double_context(), 2)), one = slice(two, 1, 0, 1);
   DirectObjective objective(double_context(), from.data.format, 8, 2);

@@ -7,7 +7,7 @@
 
 using namespace motiongan;
 
-TEST_CASE("models agree with PyTorch") {
+TEST_CASE("models agree with PyTorch" * doctest::test_suite("double")) {
   std::size_t files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(MOTIONGAN_SOURCE_DIR "/tests/golden")) {
     if (entry.path().extension() != ".safetensors") continue;
@@ -22,7 +22,7 @@ TEST_CASE("models agree with PyTorch") {
   CHECK(files >= 22);
 }
 
-TEST_CASE("a wrong value in a golden file is detected") {
+TEST_CASE("a wrong value in a golden file is detected" * doctest::test_suite("double")) {
   io::SafeTensors file =
       io::SafeTensors::read(MOTIONGAN_SOURCE_DIR "/tests/golden/cnn_critic_dense_f64.safetensors");
   std::vector<double> bias = file.at("grad.encode.bias").as<double>();

@@ -75,7 +75,7 @@ AttentionCritic make_critic(std::size_t told = 0, bool attention = true) {
 
 }  // namespace
 
-TEST_CASE("parameter names and shapes") {
+TEST_CASE("parameter names and shapes" * doctest::test_suite("double")) {
   const std::vector<std::string> attention{"attention.query.weight [1, 8, 1]",
                                            "attention.query.bias [1]",
                                            "attention.key.weight [1, 8, 1]",
@@ -111,7 +111,8 @@ TEST_CASE("parameter names and shapes") {
                             {.dof = dof, .classes = classes, .hidden = k})) == lstm);
 }
 
-TEST_CASE("derivatives of the networks with respect to input and parameters") {
+TEST_CASE("derivatives of the networks with respect to input and parameters" *
+          doctest::test_suite("double")) {
   CHECK(worst(make_generator(2), randn({5, batch, dof}), 1, [&](const auto& m, const Var& x) {
           return m(x, some_classes(), reshape(random(1, 2), {batch, 2}));
         }) < 1e-6);
@@ -123,7 +124,7 @@ TEST_CASE("derivatives of the networks with respect to input and parameters") {
               [&](const auto& m, const Var& x) { return m(x, some_classes(), 4); }) < 1e-6);
 }
 
-TEST_CASE("the gradient penalty through attention has the right gradient") {
+TEST_CASE("the gradient penalty through attention has the right gradient" * doctest::test_suite("double")) {
   // The penalty's gradient for every parameter involves second derivatives; compared with finite differences.
   for (const std::size_t told : {std::size_t{0}, classes}) {
     CAPTURE(told);
@@ -133,7 +134,7 @@ TEST_CASE("the gradient penalty through attention has the right gradient") {
   }
 }
 
-TEST_CASE("the output depends on class, noise and prior") {
+TEST_CASE("the output depends on class, noise and prior" * doctest::test_suite("double")) {
   AttentionGenerator model = make_generator(2);
   open(model);
   const Var x = random(6, dof), a = some_classes(), n = reshape(random(1, 2, 7), {batch, 2});
@@ -147,7 +148,8 @@ TEST_CASE("the output depends on class, noise and prior") {
   CHECK(made(x, a, n) != made(2.0 * x, a, n));
 }
 
-TEST_CASE("the baseline in one call equals feeding its own output back step by step") {
+TEST_CASE("the baseline in one call equals feeding its own output back step by step" *
+          doctest::test_suite("double")) {
   LstmBaseline model(Initializer(double_context(), 6), {.dof = dof, .classes = classes, .hidden = 4});
   const Var prior = random(4, dof);
   const std::vector<double> at_once = model(prior, some_classes(), 3).value().to_host<double>();
@@ -162,7 +164,7 @@ TEST_CASE("the baseline in one call equals feeding its own output back step by s
     CHECK(at_once[i] == doctest::Approx(step_by_step[i]).epsilon(1e-12));
 }
 
-TEST_CASE("attention maps, and the error without attention") {
+TEST_CASE("attention maps, and the error without attention" * doctest::test_suite("double")) {
   const Var x = random(6, dof);
   const Var map = make_generator().attention_map(x, some_classes());
   CHECK(map.shape() == Shape{batch, 6, 6});
@@ -173,7 +175,7 @@ TEST_CASE("attention maps, and the error without attention") {
   CHECK(says(message_of([&] { make_critic(0, false).attention_map(x); }), "without attention"));
 }
 
-TEST_CASE("inputs of the wrong shape are rejected") {
+TEST_CASE("inputs of the wrong shape are rejected" * doctest::test_suite("double")) {
   const Var x = random(6, dof);
   CHECK(says(message_of([&] { make_generator()(random(6, 4), some_classes()); }),
              "AttentionGenerator: prior [6, 2, 4] and classes [2, 2]"));

@@ -5,16 +5,12 @@
 #include <motiongan/procedural/procedural.hpp>
 
 #include "../support/messages.hpp"
+#include "../support/precision.hpp"
 
 using namespace motiongan;
 using namespace motiongan::testing;
 
 namespace {
-
-const Context& context(Precision precision) {
-  static const Context single({.precision = Precision::f32}), twofold({.precision = Precision::f64});
-  return precision == Precision::f64 ? twofold : single;
-}
 
 constexpr std::size_t classes = 3;
 
@@ -58,7 +54,7 @@ TEST_CASE("equals the generator to rounding over several steps with changing cla
     std::size_t frames, batch, dof, hidden, noise;
     bool attention, continues = false;
   };
-  for (const Precision precision : {Precision::f32, Precision::f64})
+  for (const Precision precision : testing::precisions())
     for (const Case& k : {Case{30, 3, 93, 64, 0, true},
                           {7, 1, 5, 20, 0, true},
                           {1, 2, 17, 9, 4, true},
@@ -67,7 +63,7 @@ TEST_CASE("equals the generator to rounding over several steps with changing cla
                           {30, 3, 93, 64, 0, true, true},
                           {6, 2, 5, 20, 2, false, true}}) {
       CAPTURE(k.frames);
-      const Context& c = context(precision);
+      const Context& c = context_of(precision);
       const AttentionGenerator g = generator(c, {.dof = k.dof,
                                                  .classes = classes,
                                                  .hidden = k.hidden,
@@ -89,8 +85,9 @@ TEST_CASE("equals the generator to rounding over several steps with changing cla
     }
 }
 
-TEST_CASE("a generator that continues adds its output to the prior's last frame, which fades") {
-  const Context& c = context(Precision::f64);
+TEST_CASE("a generator that continues adds its output to the prior's last frame, which fades" *
+          doctest::test_suite("double")) {
+  const Context& c = context_of(Precision::f64);
   AttentionGeneratorOptions options{.dof = 5, .classes = classes, .hidden = 12};
   const Tensor x = prior(c, 6, 3, 5), y = one_hot(c, 3);
   const std::vector<double> poses =
@@ -104,8 +101,8 @@ TEST_CASE("a generator that continues adds its output to the prior's last frame,
 }
 
 TEST_CASE("with exact bones the rollout equals the generator, and keeps the lengths for an hour") {
-  for (const Precision precision : {Precision::f32, Precision::f64}) {
-    const Context& c = context(precision);
+  for (const Precision precision : testing::precisions()) {
+    const Context& c = context_of(precision);
     const motion::Motion walk = motion::procedural_motion(0, {.seconds = 1}).motion;
     motion::PositionFormat format;
     format.layout = motion::PositionLayout(walk.skeleton);
@@ -147,7 +144,7 @@ TEST_CASE("with exact bones the rollout equals the generator, and keeps the leng
 }
 
 TEST_CASE("a sample is the same alone and in a batch, bit for bit") {
-  const Context& c = context(Precision::f32);
+  const Context& c = context_of(Precision::f32);
   constexpr std::size_t frames = 30, dof = 93;
   const AttentionGenerator g = generator(c, {.dof = dof, .classes = classes, .hidden = 256});
   AttentionRollout rollout(g);
@@ -164,8 +161,8 @@ TEST_CASE("a sample is the same alone and in a batch, bit for bit") {
 }
 
 TEST_CASE("16-bit weights: the motion of the rounded generator, the same alone and in a batch") {
-  for (const Precision precision : {Precision::f32, Precision::f64}) {
-    const Context& c = context(precision);
+  for (const Precision precision : testing::precisions()) {
+    const Context& c = context_of(precision);
     constexpr std::size_t frames = 30, dof = 31, batch = 7;
     AttentionGenerator g = generator(c, {.dof = dof, .classes = classes, .hidden = 128});
     const Tensor x = prior(c, frames, batch, dof), y = one_hot(c, batch);
@@ -184,7 +181,7 @@ TEST_CASE("16-bit weights: the motion of the rounded generator, the same alone a
 }
 
 TEST_CASE("weights are read at construction; buffers are allocated once") {
-  const Context& c = context(Precision::f32);
+  const Context& c = context_of(Precision::f32);
   AttentionGenerator g = generator(c, {.dof = 6, .classes = classes, .hidden = 16});
   AttentionRollout rollout(g);
   const Tensor x = prior(c, 8, 4, 6), y = one_hot(c, 4);
@@ -206,7 +203,7 @@ TEST_CASE("weights are read at construction; buffers are allocated once") {
 }
 
 TEST_CASE("inputs of the wrong shape are rejected") {
-  const Context& c = context(Precision::f32);
+  const Context& c = context_of(Precision::f32);
   const AttentionGenerator g = generator(c, {.dof = 6, .classes = classes, .hidden = 16, .noise_dim = 2});
   AttentionRollout rollout(g);
   const Tensor x = prior(c, 8, 4, 6), y = one_hot(c, 4);

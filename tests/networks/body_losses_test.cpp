@@ -32,7 +32,7 @@ std::vector<double> windows(const motion::Dataset& data, std::size_t batch) {
 
 }  // namespace
 
-TEST_CASE("first and second derivatives of the losses") {
+TEST_CASE("first and second derivatives of the losses" * doctest::test_suite("double")) {
   const motion::Dataset data = walks();
   const std::vector<double> real = windows(data, 4);
   const Shape shape{16, 4, data.format.dof()};
@@ -46,7 +46,7 @@ TEST_CASE("first and second derivatives of the losses") {
   }
 }
 
-TEST_CASE("what trembles or slides costs, what is like the clips does not") {
+TEST_CASE("what trembles or slides costs, what is like the clips does not" * doctest::test_suite("double")) {
   const motion::Dataset data = walks();
   const std::size_t dof = data.format.dof();
   const std::vector<double> real = windows(data, 8);

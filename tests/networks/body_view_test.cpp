@@ -11,7 +11,7 @@ using namespace motiongan::testing;
 using motion::RootRotation;
 using motion::Vec3;
 
-TEST_CASE("places and velocities are those of the motion") {
+TEST_CASE("places and velocities are those of the motion" * doctest::test_suite("double")) {
   for (const RootRotation form : root_forms) {
     CAPTURE(static_cast<int>(form));
     const motion::Dataset data = walking_data(form);
@@ -54,7 +54,8 @@ TEST_CASE("places and velocities are those of the motion") {
   }
 }
 
-TEST_CASE("first and second derivatives, with and without the root's position") {
+TEST_CASE("first and second derivatives, with and without the root's position" *
+          doctest::test_suite("double")) {
   for (const RootRotation form : root_forms)
     for (const bool position : {true, false}) {
       CAPTURE(static_cast<int>(form));
@@ -67,7 +68,7 @@ TEST_CASE("first and second derivatives, with and without the root's position") 
     }
 }
 
-TEST_CASE("what cannot be seen is an error") {
+TEST_CASE("what cannot be seen is an error" * doctest::test_suite("double")) {
   const motion::Dataset data = walking_data(RootRotation::heading);
   const BodyView view(double_context(), data.format);
   CHECK_THROWS_WITH_AS(view(Var::constant(Tensor(double_context(), {1, 2, data.format.dof()}))),

@@ -36,7 +36,8 @@ std::vector<double> lengths_of(const motion::PositionFormat& format, const std::
 
 }  // namespace
 
-TEST_CASE("motion takes the bone lengths of a pose, and keeps directions and the root's track") {
+TEST_CASE("motion takes the bone lengths of a pose, and keeps directions and the root's track" *
+          doctest::test_suite("double")) {
   const motion::Motion walk = motion::procedural_motion(0, {.seconds = 1}).motion;
   for (const bool track : {false, true}) {
     const motion::PositionFormat format = format_of(walk, track);
@@ -79,7 +80,7 @@ TEST_CASE("motion takes the bone lengths of a pose, and keeps directions and the
   }
 }
 
-TEST_CASE("derivatives to the second, also of a bone that has collapsed") {
+TEST_CASE("derivatives to the second, also of a bone that has collapsed" * doctest::test_suite("double")) {
   const motion::PositionFormat format = format_of(motion::procedural_motion(0, {.seconds = 1}).motion, true);
   const Bones bones(double_context(), format);
   const Input pose = randn({1, 2, format.dof()}), motion = randn({2, 2, format.dof()});

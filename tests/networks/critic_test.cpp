@@ -52,7 +52,7 @@ std::vector<double> scores(const CnnCritic& model, std::size_t frames) {
 
 }  // namespace
 
-TEST_CASE("parameter names and shapes, for every validation mode") {
+TEST_CASE("parameter names and shapes, for every validation mode" * doctest::test_suite("double")) {
   const std::vector<std::string> text{"text.embedding.weight [7, 4]",
                                       "text.lstm.weight_ih_l0 [16, 4]",
                                       "text.lstm.weight_hh_l0 [16, 4]",
@@ -91,7 +91,8 @@ TEST_CASE("parameter names and shapes, for every validation mode") {
   CHECK(listed({.frames = 4, .taps = 5}).at(13) == "residual.0.conv1.weight [4, 4, 5]");
 }
 
-TEST_CASE("the score is the weighted sum of the levels' scores, convex at first") {
+TEST_CASE("the score is the weighted sum of the levels' scores, convex at first" *
+          doctest::test_suite("double")) {
   for (LevelWeights kind : {LevelWeights::exp, LevelWeights::softmax}) {
     CnnCritic model = made({.frames = 8, .level_weights = kind});
     const std::vector<double> at_first = scores(model, 8);
@@ -125,7 +126,8 @@ TEST_CASE("the score is the weighted sum of the levels' scores, convex at first"
   CHECK(scores(model, 8)[0] == doctest::Approx(a[0]).epsilon(1e-12));
 }
 
-TEST_CASE("scores and penalties are the same whether `encode` is applied first or through other layers") {
+TEST_CASE("scores and penalties are the same whether `encode` is applied first or through other layers" *
+          doctest::test_suite("double")) {
   const CnnCritic composed = made({.frames = 8}), direct = made({.frames = 8, .composes = false});
   const std::vector<double> expected = scores(composed, 8), found = scores(direct, 8);
   for (std::size_t b = 0; b < batch; ++b) CHECK(std::abs(found[b] - expected[b]) < 1e-12);
@@ -143,7 +145,8 @@ TEST_CASE("scores and penalties are the same whether `encode` is applied first o
   for (std::size_t i = 0; i < a.size(); ++i) CHECK(std::abs(a[i] - b[i]) < 1e-10);
 }
 
-TEST_CASE("a sample's score does not depend on its batch; it depends on text and motion") {
+TEST_CASE("a sample's score does not depend on its batch; it depends on text and motion" *
+          doctest::test_suite("double")) {
   const CnnCritic model = made({.frames = 4});
   const std::vector<double> both = scores(model, 4);
   const Var first = slice(Var::constant(some_motion(4)), 1, 0, 1);
@@ -154,7 +157,7 @@ TEST_CASE("a sample's score does not depend on its batch; it depends on text and
   CHECK(model(2 * first, text).item() != both[0]);
 }
 
-TEST_CASE("motion of another size is rejected") {
+TEST_CASE("motion of another size is rejected" * doctest::test_suite("double")) {
   const CnnCritic model = made({.frames = 4});
   const Var text = model.encode_text(some_text());
   CHECK_THROWS_WITH_AS(model(Var::constant(some_motion(8)), text),
@@ -162,7 +165,8 @@ TEST_CASE("motion of another size is rejected") {
   CHECK_THROWS_AS(made({.frames = 33}), Error);
 }
 
-TEST_CASE("derivatives of the score with respect to motion and every parameter") {
+TEST_CASE("derivatives of the score with respect to motion and every parameter" *
+          doctest::test_suite("double")) {
   for (const CnnCriticOptions& options :
        {CnnCriticOptions{.frames = 4}, CnnCriticOptions{.frames = 4, .level_weights = LevelWeights::softmax},
         CnnCriticOptions{.frames = 4, .taps = 5, .validation = Validation::mod2}}) {
@@ -179,7 +183,8 @@ TEST_CASE("derivatives of the score with respect to motion and every parameter")
   }
 }
 
-TEST_CASE("the penalty's gradient for every parameter equals central differences") {
+TEST_CASE("the penalty's gradient for every parameter equals central differences" *
+          doctest::test_suite("double")) {
   for (LevelWeights kind : {LevelWeights::exp, LevelWeights::softmax}) {
     CnnCritic model = made({.frames = 4, .level_weights = kind});
     const std::vector<NamedParameter> parameters = named_parameters(model);

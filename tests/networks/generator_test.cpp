@@ -49,7 +49,7 @@ double largest_difference(const Var& a, const Var& b) {
 
 }  // namespace
 
-TEST_CASE("parameter names and shapes, as in a PyTorch model") {
+TEST_CASE("parameter names and shapes, as in a PyTorch model" * doctest::test_suite("double")) {
   const std::vector<std::string> text{"text.embedding.weight [9, 4]",
                                       "text.lstm.weight_ih_l0 [16, 4]",
                                       "text.lstm.weight_hh_l0 [16, 4]",
@@ -82,7 +82,8 @@ TEST_CASE("parameter names and shapes, as in a PyTorch model") {
   CHECK(listed(five).at(23) == "residual.1.conv1.weight [4, 4, 5]");
 }
 
-TEST_CASE("the final cut keeps N of the 2N frames of the model without cut, gradients included") {
+TEST_CASE("the final cut keeps N of the 2N frames of the model without cut, gradients included" *
+          doctest::test_suite("double")) {
   const Context& context = double_context();
   for (std::size_t taps_count : {3, 5}) {
     const std::size_t frames = 8;
@@ -117,7 +118,8 @@ TEST_CASE("the final cut keeps N of the 2N frames of the model without cut, grad
   }
 }
 
-TEST_CASE("first derivatives with respect to every parameter, with and without cut, 3 and 5 taps") {
+TEST_CASE("first derivatives with respect to every parameter, with and without cut, 3 and 5 taps" *
+          doctest::test_suite("double")) {
   const Context& context = double_context();
   for (bool final_cut : {false, true})
     for (std::size_t taps_count : {3, 5}) {
@@ -138,7 +140,7 @@ TEST_CASE("first derivatives with respect to every parameter, with and without c
     }
 }
 
-TEST_CASE("noise of another size is rejected") {
+TEST_CASE("noise of another size is rejected" * doctest::test_suite("double")) {
   CnnGenerator model = made(double_context(), 4, false);
   const Sentences text(double_context(), {{1}}, vocabulary);
   CHECK_THROWS_WITH_AS(model(text, all_noise(double_context(), 1, 1), {}),

@@ -47,7 +47,7 @@ Var along_y(const std::vector<std::array<double, 3>>& frames) {
 
 }  // namespace
 
-TEST_CASE("the skeleton loss by hand") {
+TEST_CASE("the skeleton loss by hand" * doctest::test_suite("double")) {
   const SkeletonLoss loss(double_context(), leg());
   const Var prior = along_y({{-2, -6, -6}, {-9, -9, -9}});  // only its first frame is used: bones of 2 and 4
   CHECK(loss(prior, along_y({{-2, -6, -6}, {2, 6, 5}})).item() == doctest::Approx(0).epsilon(1e-9));
@@ -62,14 +62,14 @@ TEST_CASE("the skeleton loss by hand") {
   CHECK(loss(priors, both).item() == doctest::Approx((1.0 + 9.0) / 2 / 9));
 }
 
-TEST_CASE("bones collapsed to a point have a finite gradient") {
+TEST_CASE("bones collapsed to a point have a finite gradient" * doctest::test_suite("double")) {
   const SkeletonLoss loss(double_context(), leg());
   const Var prior = along_y({{-2, -6, -6}});
   const Var x = Var::leaf(along_y({{0, 0, 0}}).value());
   for (const double g : grad(loss(prior, x), {x})[0].value().to_host<double>()) CHECK(std::isfinite(g));
 }
 
-TEST_CASE("derivatives of the losses") {
+TEST_CASE("derivatives of the losses" * doctest::test_suite("double")) {
   const SkeletonLoss lengths(double_context(), leg()), vectors(double_context(), leg(), true);
   const Input prior = randn({2, 2, 9}), future = randn({3, 2, 9});
   CHECK(check_grads(
@@ -80,7 +80,7 @@ TEST_CASE("derivatives of the losses") {
             double_context(), [&](auto& v) { return blend_loss(v[0], v[1]); }, {prior, future}, 2) < 1e-6);
 }
 
-TEST_CASE("the blend loss by hand") {
+TEST_CASE("the blend loss by hand" * doctest::test_suite("double")) {
   const auto frames = [](const std::vector<double>& values, std::size_t count) {
     return Var::constant(Tensor::from(double_context(), {count, 2, 2}, values));
   };
@@ -89,7 +89,7 @@ TEST_CASE("the blend loss by hand") {
   CHECK(blend_loss(prior, future).item() == doctest::Approx(((1 + 4) + (0 + 9)) / 2.0));
 }
 
-TEST_CASE("cross-entropy by hand, and for large logits") {
+TEST_CASE("cross-entropy by hand, and for large logits" * doctest::test_suite("double")) {
   const Var logits =
       Var::constant(Tensor::from(double_context(), {2, 2}, std::vector<double>{0, 0, 1000, 0}));
   const auto against = [&](std::vector<std::size_t> labels) {

@@ -65,7 +65,7 @@ double by_the_equation(RnnCritic& model, const Var& motion, const Var& h_txt) {
 
 }  // namespace
 
-TEST_CASE("parameter names and shapes") {
+TEST_CASE("parameter names and shapes" * doctest::test_suite("double")) {
   RnnCritic model = made();
   std::vector<std::string> lines;
   for (const NamedParameter& p : named_parameters(model))
@@ -96,7 +96,8 @@ TEST_CASE("parameter names and shapes") {
   CHECK(named_parameters(model).back().value->value().to_host() == std::vector<float>{0.5F, 0.5F});
 }
 
-TEST_CASE("scores follow eq. 10, on the LSTM's states or on the differences") {
+TEST_CASE("scores follow eq. 10, on the LSTM's states or on the differences" *
+          doctest::test_suite("double")) {
   std::vector<double> by_option;
   for (DiffInput diff_input : {DiffInput::hidden, DiffInput::difference})
     for (std::size_t frames : {2, 3, 9}) {
@@ -115,7 +116,8 @@ TEST_CASE("scores follow eq. 10, on the LSTM's states or on the differences") {
   CHECK(by_option[2] != doctest::Approx(by_option[5]).epsilon(1e-3));
 }
 
-TEST_CASE("a sample's score does not depend on its batch; it depends on text and motion") {
+TEST_CASE("a sample's score does not depend on its batch; it depends on text and motion" *
+          doctest::test_suite("double")) {
   const RnnCritic model = made();
   const std::vector<double> both =
       model(Var::constant(some_motion(6)), model.encode_text(some_text())).value().to_host<double>();
@@ -127,7 +129,7 @@ TEST_CASE("a sample's score does not depend on its batch; it depends on text and
   CHECK(model(2 * first, text).item() != both[0]);
 }
 
-TEST_CASE("motion of one frame or another size is rejected") {
+TEST_CASE("motion of one frame or another size is rejected" * doctest::test_suite("double")) {
   const RnnCritic model = made();
   const Var text = model.encode_text(some_text());
   CHECK(message_of([&] { model(Var::constant(some_motion(1)), text); }) ==
@@ -140,7 +142,8 @@ TEST_CASE("motion of one frame or another size is rejected") {
         "RnnCritic: vocabulary, dof and hidden must be positive");
 }
 
-TEST_CASE("derivatives of the score with respect to motion and every parameter") {
+TEST_CASE("derivatives of the score with respect to motion and every parameter" *
+          doctest::test_suite("double")) {
   for (DiffInput diff_input : {DiffInput::hidden, DiffInput::difference}) {
     RnnCritic model = made(diff_input);
     const std::vector<NamedParameter> parameters = named_parameters(model);
@@ -156,7 +159,8 @@ TEST_CASE("derivatives of the score with respect to motion and every parameter")
   }
 }
 
-TEST_CASE("the penalty's gradient for every parameter equals central differences") {
+TEST_CASE("the penalty's gradient for every parameter equals central differences" *
+          doctest::test_suite("double")) {
   for (DiffInput diff_input : {DiffInput::hidden, DiffInput::difference})
     for (std::size_t frames : {2, 7}) {
       CAPTURE(frames);

@@ -4,6 +4,7 @@
 #include <motiongan/networks/rnn_stream.hpp>
 
 #include "../support/messages.hpp"
+#include "../support/precision.hpp"
 
 using namespace motiongan;
 using namespace motiongan::testing;
@@ -73,7 +74,7 @@ TEST_CASE("steps equal one call, bit for bit, while others are added and removed
 }
 
 TEST_CASE("16-bit weights: steps equal one call of the rounded generator, near the first one") {
-  for (const Precision precision : {Precision::f32, Precision::f64}) {
+  for (const Precision precision : testing::precisions()) {
     const Context c(ContextOptions{.precision = precision});
     RnnGenerator generator(Initializer(c, 3),
                            {.vocabulary = words, .dof = dof, .frames = 12, .hidden = hidden});

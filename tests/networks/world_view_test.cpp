@@ -12,7 +12,7 @@ using namespace motiongan::testing;
 using motion::RootRotation;
 using motion::Vec3;
 
-TEST_CASE("joints are where the motion has them, seen from its first frame") {
+TEST_CASE("joints are where the motion has them, seen from its first frame" * doctest::test_suite("double")) {
   for (const RootRotation form : root_forms) {
     CAPTURE(static_cast<int>(form));
     const motion::Dataset data = walking_data(form);
@@ -45,7 +45,7 @@ TEST_CASE("joints are where the motion has them, seen from its first frame") {
   }
 }
 
-TEST_CASE("first and second derivatives of the places and the heading") {
+TEST_CASE("first and second derivatives of the places and the heading" * doctest::test_suite("double")) {
   for (const RootRotation form : root_forms) {
     CAPTURE(static_cast<int>(form));
     const motion::Dataset data = walking_data(form);

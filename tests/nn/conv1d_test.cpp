@@ -47,7 +47,8 @@ Var random(std::size_t frames, std::size_t batch, std::size_t channels) {
 
 }  // namespace
 
-TEST_CASE("Conv1d matches PyTorch, for 1, 3, 5 and 7 taps and from one frame") {
+TEST_CASE("Conv1d matches PyTorch, for 1, 3, 5 and 7 taps and from one frame" *
+          doctest::test_suite("double")) {
   Initializer init(double_context(), 1);
   for (std::size_t taps_count : {1, 3, 5, 7})
     for (std::size_t frames : {1, 2, 3, 4, 8, 13}) {
@@ -60,7 +61,7 @@ TEST_CASE("Conv1d matches PyTorch, for 1, 3, 5 and 7 taps and from one frame") {
     }
 }
 
-TEST_CASE("residual and ReLU are applied after the convolution") {
+TEST_CASE("residual and ReLU are applied after the convolution" * doctest::test_suite("double")) {
   Initializer init(double_context(), 2);
   const Conv1d conv(init, 4, 4, 3);
   const Var x = random(6, 2, 4);
@@ -70,7 +71,7 @@ TEST_CASE("residual and ReLU are applied after the convolution") {
   check_near(conv(x, {.residual = x, .relu = true}).value().to_host<double>(), expected);
 }
 
-TEST_CASE("Conv1d::down equals the pooled convolution, gradients included") {
+TEST_CASE("Conv1d::down equals the pooled convolution, gradients included" * doctest::test_suite("double")) {
   Initializer init(double_context(), 3);
   const Conv1d conv(init, 5, 7, 3);
   for (std::size_t frames : {2, 3, 4, 5, 8, 32}) {
@@ -93,7 +94,7 @@ TEST_CASE("Conv1d::down equals the pooled convolution, gradients included") {
                        "conv_down: weight has 5 taps, expected 3", Error);
 }
 
-TEST_CASE("Linear applies to the last axis, whatever the others") {
+TEST_CASE("Linear applies to the last axis, whatever the others" * doctest::test_suite("double")) {
   Initializer init(double_context(), 5);
   const Linear linear(init, 4, 3);
   const Var x = random(2, 3, 4);
@@ -113,7 +114,7 @@ TEST_CASE("Linear applies to the last axis, whatever the others") {
   CHECK(linear(x).shape() == Shape{2, 3, 3});
 }
 
-TEST_CASE("wrong sizes are rejected, with both shapes") {
+TEST_CASE("wrong sizes are rejected, with both shapes" * doctest::test_suite("double")) {
   Initializer init(double_context(), 6);
   CHECK_THROWS_WITH_AS(Conv1d(init, 4, 4, 2), "Conv1d: taps is 2, expected an odd number for same padding",
                        Error);
@@ -141,7 +142,7 @@ TEST_CASE("numbers of frames that are powers of two") {
 }
 
 TEST_CASE("many rows, with packed weights, give the same bits as few rows") {
-  for (const Precision precision : {Precision::f32, Precision::f64}) {
+  for (const Precision precision : testing::precisions()) {
     const Context context({.precision = precision});
     Initializer init(context, 4);
     constexpr std::size_t frames = 33, batch = 17;

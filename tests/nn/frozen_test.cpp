@@ -16,7 +16,8 @@ Var leaf(double value) { return Var::leaf(Tensor::from(double_context(), {1}, st
 
 }  // namespace
 
-TEST_CASE("a graph recorded while a parameter was frozen has its whole gradient afterwards") {
+TEST_CASE("a graph recorded while a parameter was frozen has its whole gradient afterwards" *
+          doctest::test_suite("double")) {
   Var p = leaf(3);
   const Var x = leaf(2);
   const auto f = [&] { return x * square(p) + x * p; };  // by p: 2 x p + x, by x: p^2 + p
@@ -35,7 +36,8 @@ TEST_CASE("a graph recorded while a parameter was frozen has its whole gradient 
   CHECK(grad(slope, {p})[0].item() == 7);
 }
 
-TEST_CASE("the gradient of a frozen parameter is an error, whenever its graph was recorded") {
+TEST_CASE("the gradient of a frozen parameter is an error, whenever its graph was recorded" *
+          doctest::test_suite("double")) {
   Var p = leaf(3), q = leaf(5), none;
   const std::vector<NamedParameter> parameters{{"p", &p}, {"none", &none}};
   const Var before = p * q;

@@ -89,7 +89,7 @@ TEST_CASE("equal seeds give equal weights, other seeds others, and no two arrays
   }
 }
 
-TEST_CASE("initial weights in double equal those in float") {
+TEST_CASE("initial weights in double equal those in float" * doctest::test_suite("double")) {
   const Context doubles({.precision = Precision::f64});
   Initializer a(context(), 5), b(doubles, 5);
   CHECK(Linear(a, 7, 9).weight.value().to_host<double>() == Linear(b, 7, 9).weight.value().to_host<double>());

@@ -98,7 +98,7 @@ TEST_CASE("other floating-point types are read, integers are not") {
   CHECK(says(refusal(file), "I64"));
 }
 
-TEST_CASE("double contexts write and read doubles") {
+TEST_CASE("double contexts write and read doubles" * doctest::test_suite("double")) {
   const Context doubles({.precision = Precision::f64});
   const std::vector<double> fine{0.1, 1.0 / 3};
   Var v = Var::leaf(Tensor::from(doubles, {2}, fine));

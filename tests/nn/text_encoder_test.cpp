@@ -34,7 +34,7 @@ TEST_CASE("sentences: layout, and invalid words") {
   CHECK_THROWS_AS(Sentences(context, {{-1}}, vocabulary), Error);
 }
 
-TEST_CASE("sentences that samples share are encoded once") {
+TEST_CASE("sentences that samples share are encoded once" * doctest::test_suite("double")) {
   const Context context(ContextOptions{.precision = Precision::f64});
   // 17 samples and quarters of 5: three distinct sentences take 5 rows, 16 distinct ones a row each.
   Words shared{{3, 1}, {5, 6, 7}, {3, 1}, {3, 1}, {2}, {5, 6, 7}};

@@ -26,7 +26,7 @@ Var random(std::size_t frames, std::size_t batch, std::size_t channels, std::uin
 
 }  // namespace
 
-TEST_CASE("frame products, sample by sample") {
+TEST_CASE("frame products, sample by sample" * doctest::test_suite("double")) {
   // Two samples of one channel: the product of each frame of a with each frame of c.
   const Var a = Var::constant(Tensor::from(double_context(), {2, 2, 1}, std::vector<double>{1, 10, 2, 20}));
   const Var c =
@@ -46,13 +46,13 @@ TEST_CASE("frame products, sample by sample") {
         }).starts_with("attention_apply: a map [2, 2, 3] over frames [2, 2, 1]"));
 }
 
-TEST_CASE("rows of an attention map sum to one") {
+TEST_CASE("rows of an attention map sum to one" * doctest::test_suite("double")) {
   const Var map = attention_map(random(4, 2, 3, 1), random(5, 2, 3, 2));
   CHECK(map.shape() == Shape{2, 5, 4});
   for (const double total : sum(map, -1).value().to_host<double>()) CHECK(total == doctest::Approx(1));
 }
 
-TEST_CASE("first, second and third derivatives") {
+TEST_CASE("first, second and third derivatives" * doctest::test_suite("double")) {
   const auto check = [](const Function& f, const std::vector<Input>& at) {
     CHECK(check_grads(double_context(), f, at, 3) < 1e-7);
   };
@@ -64,7 +64,7 @@ TEST_CASE("first, second and third derivatives") {
         {c, randn({5, 2, 4})});
 }
 
-TEST_CASE("the layer's derivatives with respect to input and parameters") {
+TEST_CASE("the layer's derivatives with respect to input and parameters" * doctest::test_suite("double")) {
   SelfAttention layer = made(8, 0.7);
   std::vector<Input> at{randn({4, 2, 8})};
   std::vector<Shape> shapes;
@@ -78,7 +78,8 @@ TEST_CASE("the layer's derivatives with respect to input and parameters") {
   CHECK(check_grads(double_context(), f, at, 2) < 1e-7);
 }
 
-TEST_CASE("with gamma 0 the layer is the identity, and only gamma has a gradient") {
+TEST_CASE("with gamma 0 the layer is the identity, and only gamma has a gradient" *
+          doctest::test_suite("double")) {
   Initializer init(double_context(), 3);
   SelfAttention layer(init, 16);
   CHECK(layer.gamma.item() == 0);

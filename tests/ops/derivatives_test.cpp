@@ -28,7 +28,7 @@ const Input positive(Shape shape) {
 
 }  // namespace
 
-TEST_CASE("elementwise operations") {
+TEST_CASE("elementwise operations" * doctest::test_suite("double")) {
   const Input x = randn({3, 7}), y = randn({3, 7}), kinked = randn({3, 7}, 0.05);
   check("affine", [](auto& v) { return affine(v[0], 1.7, -0.3); }, {x});
   check("weighted_sum", [](auto& v) { return weighted_sum(v[0], 2, v[1], -3); }, {x, y});
@@ -47,7 +47,7 @@ TEST_CASE("elementwise operations") {
   check("mixed", [](auto& v) { return tanh(v[0] * v[1]) * exp(v[1]) + sigmoid(v[0]); }, {x, y});
 }
 
-TEST_CASE("reductions and broadcasts") {
+TEST_CASE("reductions and broadcasts" * doctest::test_suite("double")) {
   const Input x = randn({4, 3, 5});
   for (int axis : {0, 1, 2, -1}) check("sum", [=](auto& v) { return square(sum(v[0], axis, 0.5)); }, {x});
   check("sum_last", [](auto& v) { return square(sum(v[0], -1)); }, {x});
@@ -66,7 +66,7 @@ TEST_CASE("reductions and broadcasts") {
   check("cross_entropy", [](auto& v) { return cross_entropy(v[0], v[1]); }, {randn({4, 3}), randn({4, 3})});
 }
 
-TEST_CASE("relu of a sum with a broadcast operand") {
+TEST_CASE("relu of a sum with a broadcast operand" * doctest::test_suite("double")) {
   // Values far from the kink, so that no difference step crosses it.
   Input big = randn({6, 2, 5}, 3), small = randn({3, 2, 5});
   for (double& v : small.values) v *= 0.5;
@@ -74,7 +74,7 @@ TEST_CASE("relu of a sum with a broadcast operand") {
   check("relu_of_sum", [](auto& v) { return square(relu_of_sum(v[0], v[1])); }, {big, small});
 }
 
-TEST_CASE("layout operations") {
+TEST_CASE("layout operations" * doctest::test_suite("double")) {
   const Input x = randn({5, 3, 4});
   const Indices offset(double_context(), std::vector<cl_int>{-2, 0, 3}),
       index(double_context(), std::vector<cl_int>{2, 0, 2, 1});
@@ -101,7 +101,7 @@ TEST_CASE("layout operations") {
         {randn({4, 5})});
 }
 
-TEST_CASE("matmul: plain, transposed and batched") {
+TEST_CASE("matmul: plain, transposed and batched" * doctest::test_suite("double")) {
   for (bool ta : {false, true})
     for (bool tb : {false, true}) {
       check("matmul", [=](auto& v) { return square(matmul(v[0], v[1], ta, tb)); },
@@ -112,7 +112,7 @@ TEST_CASE("matmul: plain, transposed and batched") {
     }
 }
 
-TEST_CASE("taps: convolutions and linear layers") {
+TEST_CASE("taps: convolutions and linear layers" * doctest::test_suite("double")) {
   for (bool transposed : {false, true})
     for (std::size_t frames : {1, 2, 5}) {
       const auto conv = [=](auto& v) { return square(conv1d(v[0], v[1], {-1, 0, 1}, frames, transposed)); };
@@ -146,7 +146,8 @@ TEST_CASE("taps: convolutions and linear layers") {
       {randn({4, 2, 3}), randn({4, 2, 5})}, 2);
 }
 
-TEST_CASE("LSTM layer: fused first derivative, composed higher ones, sequence lengths") {
+TEST_CASE("LSTM layer: fused first derivative, composed higher ones, sequence lengths" *
+          doctest::test_suite("double")) {
   const std::size_t frames = 3, batch = 2, k = 3;
   const std::vector<Input> at{randn({frames, batch, 4 * k}), randn({4 * k, k}), randn({batch, k}),
                               randn({batch, k})};
@@ -164,7 +165,7 @@ TEST_CASE("LSTM layer: fused first derivative, composed higher ones, sequence le
   }
 }
 
-TEST_CASE("forward kinematics") {
+TEST_CASE("forward kinematics" * doctest::test_suite("double")) {
   motion::Skeleton body;
   body.joints = {{"Reference", -1, {1, 2, 3}, {}, {}},   {"Hips", 0, {4, 5, 6}, {}, {}},
                  {"Spine", 1, {0.1, 0.8, -0.2}, {}, {}}, {"Leg", 1, {0.3, -0.5, 0.1}, {}, {}},

@@ -15,7 +15,7 @@
 using namespace motiongan;
 using namespace motiongan::testing;
 
-TEST_CASE("products of nothing") {
+TEST_CASE("products of nothing" * doctest::test_suite("double")) {
   const Function product = [](auto& v) { return matmul(v[0], v[1]); };
   check_zero("no rows", product, {{0, 3}, {3, 2}}, {0, 2});
   check_zero("no columns", product, {{2, 3}, {3, 0}}, {2, 0});
@@ -33,7 +33,7 @@ TEST_CASE("products of nothing") {
              {{0, 2, 3}, {4, 2, 3}}, {2, 4, 0});
 }
 
-TEST_CASE("convolutions of nothing") {
+TEST_CASE("convolutions of nothing" * doctest::test_suite("double")) {
   const auto conv = [](std::size_t frames, bool transposed = false) {
     return [=](auto& v) { return conv1d(v[0], v[1], {-1, 0, 1}, frames, transposed); };
   };
@@ -72,7 +72,7 @@ TEST_CASE("convolutions of nothing") {
       "pairs [4, 2, 3] of 4 frames");
 }
 
-TEST_CASE("recurrent networks of no samples") {
+TEST_CASE("recurrent networks of no samples" * doctest::test_suite("double")) {
   const std::size_t k = 2, dof = 3;
   const auto layer = [](const Indices& lengths) {
     return [=](auto& v) { return lstm_layer(v[0], v[1], v[2], v[3], lengths); };
@@ -97,7 +97,7 @@ TEST_CASE("recurrent networks of no samples") {
              {3, 0, dof});
 }
 
-TEST_CASE("recurrent networks of no steps or hidden units are errors") {
+TEST_CASE("recurrent networks of no steps or hidden units are errors" * doctest::test_suite("double")) {
   const auto lstm = [](std::size_t frames, std::size_t k) {
     return message_of([=] {
       lstm_layer(some({frames, 2, 4 * k}), some({4 * k, k}), some({2, k}), some({2, k}));
@@ -121,7 +121,7 @@ TEST_CASE("recurrent networks of no steps or hidden units are errors") {
       "gru_rollout: gates [1, 2, 0]");
 }
 
-TEST_CASE("layers over nothing") {
+TEST_CASE("layers over nothing" * doctest::test_suite("double")) {
   Initializer init(double_context(), 1);
   const SelfAttention attention(init, 8);
   const Conv1d conv(init, 8, 4, 3);
@@ -137,7 +137,7 @@ TEST_CASE("layers over nothing") {
   check_error([&] { lstm.advance(some({0, 2, 8}), other); }, "give at least one step");
 }
 
-TEST_CASE("kernels of sampling have nothing to do for no frames or samples") {
+TEST_CASE("kernels of sampling have nothing to do for no frames or samples" * doctest::test_suite("double")) {
   const auto& now = double_context().statistics();
   const auto tensor = [](Shape shape) { return some(std::move(shape)).value(); };
   const Tensor weight = tensor({2, 8}), bias = tensor({8}), scratch = tensor({100}), classes = tensor({2, 3});
@@ -152,7 +152,8 @@ TEST_CASE("kernels of sampling have nothing to do for no frames or samples") {
   CHECK(now.launches == before);
 }
 
-TEST_CASE("layers without inputs are errors, optimizers of nothing do nothing") {
+TEST_CASE("layers without inputs are errors, optimizers of nothing do nothing" *
+          doctest::test_suite("double")) {
   Initializer init(double_context(), 1);
   check_error([&] { Linear(init, 0, 3); },
               "weights of shape [3, 0] cannot be initialised: a layer has no inputs");

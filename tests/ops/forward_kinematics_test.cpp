@@ -21,7 +21,7 @@ TEST_CASE("positions of a procedural motion are those of its forward kinematics"
     for (std::size_t j = 0; j < joints; ++j)
       for (std::size_t c = 0; c < 3; ++c)
         maps[(3 * j + c) * m.frames + f] = motion::expmap_from_quat(m.rotation(f, j))[c];
-  for (const Precision precision : {Precision::f32, Precision::f64}) {
+  for (const Precision precision : testing::precisions()) {
     const Context context({.precision = precision});
     const JointTree tree(context, m.skeleton);
     const std::vector<double> found =
@@ -41,7 +41,7 @@ TEST_CASE("single precision: gradients near no turn keep their digits") {
   body.joints = {{"Hips", -1, {}, {}, {}}, {"Spine", 0, {0.1, 0.8, -0.2}, {}, {}}};
   for (const double turn : {0.0, 1e-4, 0.05, 0.0999, 0.1001, 2.0}) {
     std::vector<double> gradients[2];
-    for (const Precision precision : {Precision::f32, Precision::f64}) {
+    for (const Precision precision : testing::precisions()) {
       const Context context({.precision = precision});
       const Var q = Var::leaf(Tensor::from(
           context, {6, 1}, std::vector<double>{turn * 0.6, -turn * 0.64, turn * 0.48, 0.1, 0.2, 0.3}));

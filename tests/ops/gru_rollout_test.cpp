@@ -39,7 +39,8 @@ Function composed(std::size_t frames) {
 
 }  // namespace
 
-TEST_CASE("gru_rollout: derivatives with respect to every input, to third order") {
+TEST_CASE("gru_rollout: derivatives with respect to every input, to third order" *
+          doctest::test_suite("double")) {
   for (const auto& sizes :
        {std::array<std::size_t, 3>{1, 1, 3}, {3, 1, 2}, {1, 3, 3}, {3, 3, 9}, {2, 4, 5}}) {
     const std::size_t given = sizes[0], frames = sizes[1], k = sizes[2];
@@ -50,7 +51,7 @@ TEST_CASE("gru_rollout: derivatives with respect to every input, to third order"
   CHECK(check_grads(double_context(), fused(2), inputs(2, 2, 2, 2), 3) < 1e-7);
 }
 
-TEST_CASE("gru_rollout: the fused form equals the composed one") {
+TEST_CASE("gru_rollout: the fused form equals the composed one" * doctest::test_suite("double")) {
   for (const auto& sizes : {std::array<std::size_t, 2>{1, 1}, {5, 1}, {1, 6}, {4, 7}}) {
     const std::size_t given = sizes[0], frames = sizes[1];
     CAPTURE(given);

@@ -21,7 +21,8 @@ Var rows(Shape shape) { return ones(double_context(), std::move(shape)); }
 
 }  // namespace
 
-TEST_CASE("gather_rows: the error names the index, its place and what was expected") {
+TEST_CASE("gather_rows: the error names the index, its place and what was expected" *
+          doctest::test_suite("double")) {
   const Var table = rows({3, 2});
   CHECK(message_of([&] {
           gather_rows(table, indices({0, 2, 3, 1}));
@@ -37,7 +38,7 @@ TEST_CASE("gather_rows: the error names the index, its place and what was expect
   CHECK(says(message_of([&] { gather_rows(rows({3}), indices({0})); }), "a table [3], expected"));
 }
 
-TEST_CASE("checking an index does not wait for the device") {
+TEST_CASE("checking an index does not wait for the device" * doctest::test_suite("double")) {
   const Indices index = indices({2, 0});
   const auto& now = double_context().statistics();
   const std::size_t reads = now.reads;
@@ -46,7 +47,7 @@ TEST_CASE("checking an index does not wait for the device") {
   CHECK(now.reads == reads);
 }
 
-TEST_CASE("the range follows the last values, in every copy") {
+TEST_CASE("the range follows the last values, in every copy" * doctest::test_suite("double")) {
   Indices index(double_context(), 2);
   const Indices copy = index;
   const Var table = rows({5, 2});
@@ -59,7 +60,7 @@ TEST_CASE("the range follows the last values, in every copy") {
   CHECK_THROWS_AS(gather_rows(table, copy), Error);
 }
 
-TEST_CASE("indices drawn on the device have a known range") {
+TEST_CASE("indices drawn on the device have a known range" * doctest::test_suite("double")) {
   const Indices drawn = random_integers(double_context(), {.seed = 1}, 4, -2, 5);
   CHECK(message_of([&] {
           gather_rows(rows({3, 2}), drawn);
@@ -74,7 +75,7 @@ TEST_CASE("indices drawn on the device have a known range") {
   CHECK_THROWS_AS(random_integers(double_context(), {}, 4, 0, std::size_t{1} << 40), Error);
 }
 
-TEST_CASE("scatter_add_rows") {
+TEST_CASE("scatter_add_rows" * doctest::test_suite("double")) {
   CHECK(message_of([&] {
           scatter_add_rows(rows({3, 2}), indices({0, 5, 1}), 5);
         }) == "scatter_add_rows: index 5 at place 1 of 3, expected 0 to 4");
@@ -83,7 +84,7 @@ TEST_CASE("scatter_add_rows") {
         }) == "scatter_add_rows: 3 indices for rows [4, 2]");
 }
 
-TEST_CASE("shift_frames takes any offset whose frame number fits an int") {
+TEST_CASE("shift_frames takes any offset whose frame number fits an int" * doctest::test_suite("double")) {
   const Var x = rows({3, 2, 1});
   const Var far = shift_frames(x, indices({1'000'000'000, -1'000'000'000}), 3, {.outside = 7});
   CHECK(far.value().to_host() == std::vector<float>(6, 7));
@@ -95,7 +96,7 @@ TEST_CASE("shift_frames takes any offset whose frame number fits an int") {
              concat("shift_frames: index ", offset, " at place 1 of 2, expected -2147483639 to 2147483639")));
 }
 
-TEST_CASE("lengths of an LSTM's samples") {
+TEST_CASE("lengths of an LSTM's samples" * doctest::test_suite("double")) {
   const Var gates = rows({3, 2, 4}), weights = rows({4, 1}), first = rows({2, 1});
   const auto message = [&](const std::vector<cl_int>& lengths) {
     return message_of([&] { lstm_layer(gates, weights, first, first, indices(lengths)); });

@@ -4,10 +4,12 @@
 #include <motiongan/ops/layout.hpp>
 #include <vector>
 
+#include "../support/precision.hpp"
+
 using namespace motiongan;
 
 TEST_CASE("any number of parts of any size lie one after the other, in rows too") {
-  for (const Precision precision : {Precision::f32, Precision::f64}) {
+  for (const Precision precision : testing::precisions()) {
     const Context context(ContextOptions{.precision = precision});
     for (const std::size_t rows : {std::size_t{1}, std::size_t{3}})
       for (const std::size_t count : {1u, 7u, 8u, 9u, 20u}) {

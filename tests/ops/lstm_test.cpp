@@ -51,7 +51,8 @@ void check_equal(const Var& found, const Var& expected, double tolerance) {
 
 }  // namespace
 
-TEST_CASE("derivatives with respect to all four inputs: fused first, composed higher ones") {
+TEST_CASE("derivatives with respect to all four inputs: fused first, composed higher ones" *
+          doctest::test_suite("double")) {
   for (std::size_t k : {3, 8, 17})
     for (std::size_t frames : {1, 2, 5}) {
       CAPTURE(k);
@@ -61,7 +62,8 @@ TEST_CASE("derivatives with respect to all four inputs: fused first, composed hi
     }
 }
 
-TEST_CASE("derivatives of the gradient for the gates, with respect to gates, weights and seed") {
+TEST_CASE("derivatives of the gradient for the gates, with respect to gates, weights and seed" *
+          doctest::test_suite("double")) {
   for (std::size_t k : {3, 8, 17})
     for (std::size_t frames : {1, 2, 5}) {
       CAPTURE(k);
@@ -81,7 +83,7 @@ TEST_CASE("derivatives of the gradient for the gates, with respect to gates, wei
     }
 }
 
-TEST_CASE("a penalty on the gradient through two layers") {
+TEST_CASE("a penalty on the gradient through two layers" * doctest::test_suite("double")) {
   const std::size_t frames = 4, k = 5;
   const auto first = layer_inputs(frames, k), second = layer_inputs(frames, k);
   const Var h = constant(first[2]), c = constant(first[3]);
@@ -107,7 +109,8 @@ TEST_CASE("a penalty on the gradient through two layers") {
   CHECK(middle - start < (launches() - middle) / 5);  // the fused kernels were used
 }
 
-TEST_CASE("second derivatives outside the fused form are composed, and correct") {
+TEST_CASE("second derivatives outside the fused form are composed, and correct" *
+          doctest::test_suite("double")) {
   const std::size_t frames = 3, k = 3;
   const auto in = layer_inputs(frames, k);
   const Input seed = randn({2, frames, batch, k});
@@ -134,7 +137,8 @@ TEST_CASE("second derivatives outside the fused form are composed, and correct")
   }
 }
 
-TEST_CASE("first derivatives with sequence lengths equal the composed form's") {
+TEST_CASE("first derivatives with sequence lengths equal the composed form's" *
+          doctest::test_suite("double")) {
   const std::size_t frames = 4, k = 5;
   const auto in = layer_inputs(frames, k);
   const Indices lengths(double_context(), std::vector<cl_int>{4, 2});
@@ -148,7 +152,7 @@ TEST_CASE("first derivatives with sequence lengths equal the composed form's") {
   for (std::size_t i = 0; i < v.size(); ++i) check_equal(of_a[i], of_b[i], 1e-12);
 }
 
-TEST_CASE("h only: the layer without cell states, to the third derivative") {
+TEST_CASE("h only: the layer without cell states, to the third derivative" * doctest::test_suite("double")) {
   for (std::size_t frames : {1, 4}) {
     CAPTURE(frames);
     const std::size_t k = 3;

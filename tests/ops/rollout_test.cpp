@@ -32,7 +32,8 @@ Var composed(const std::vector<Var>& v) {
 
 }  // namespace
 
-TEST_CASE("rollout: derivatives with respect to every input, with and without given frames") {
+TEST_CASE("rollout: derivatives with respect to every input, with and without given frames" *
+          doctest::test_suite("double")) {
   for (const auto& [frames, k, given] :
        {std::array<std::size_t, 3>{4, 3, 1}, {5, 3, 3}, {3, 5, 3}, {2, 9, 1}}) {
     CAPTURE(frames);
@@ -42,7 +43,7 @@ TEST_CASE("rollout: derivatives with respect to every input, with and without gi
   CHECK(check_grads(double_context(), fused, inputs(3, 2, 2, 2, 1), 3) < 1e-7);
 }
 
-TEST_CASE("rollout: the fused form equals the composed one") {
+TEST_CASE("rollout: the fused form equals the composed one" * doctest::test_suite("double")) {
   for (std::size_t given : {1u, 4u, 9u}) {
     CAPTURE(given);
     std::vector<Var> x;
@@ -66,7 +67,8 @@ TEST_CASE("rollout: the fused form equals the composed one") {
   }
 }
 
-TEST_CASE("rollout: one frame returns the given one; wrong shapes are rejected") {
+TEST_CASE("rollout: one frame returns the given one; wrong shapes are rejected" *
+          doctest::test_suite("double")) {
   const Context& context = double_context();
   const auto value = [&](Shape shape) { return zeros(context, std::move(shape)); };
   const RolloutWeights w{value({8, 5}), value({8, 4}), value({8}), value({3, 2}), value({3})};

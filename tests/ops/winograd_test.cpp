@@ -8,16 +8,14 @@
 #include <motiongan/ops/elementwise.hpp>
 #include <random>
 
+#include "../support/precision.hpp"
+
 using namespace motiongan;
 using namespace motiongan::detail;
 
 namespace {
 
-Context& context_of(Precision precision) {
-  static Context f32(ContextOptions{.precision = Precision::f32}),
-      f64(ContextOptions{.precision = Precision::f64});
-  return precision == Precision::f32 ? f32 : f64;
-}
+using testing::context_of;
 
 Tensor some(const Context& context, std::uint32_t seed, std::size_t frames, std::size_t batch,
             std::size_t channels) {
@@ -101,7 +99,7 @@ TEST_CASE("a form computes a convolution") {
 
 TEST_CASE("values equal the sum of shifted products") {
   constexpr std::size_t batch = 3, in = 65, out = 93;
-  for (const Precision precision : {Precision::f32, Precision::f64}) {
+  for (const Precision precision : testing::precisions()) {
     const Context& context = context_of(precision);
     if (!in_use(context)) return;
     const double allowed = allowed_distance(precision);
@@ -130,7 +128,7 @@ TEST_CASE("values equal the sum of shifted products") {
 
 TEST_CASE("gradients of weights equal the sum of shifted products") {
   constexpr std::size_t batch = 3, p_channels = 96, q_channels = 101;
-  for (const Precision precision : {Precision::f32, Precision::f64}) {
+  for (const Precision precision : testing::precisions()) {
     const Context& context = context_of(precision);
     if (!in_use(context)) return;
     const double allowed = allowed_distance(precision);
@@ -167,7 +165,8 @@ TEST_CASE("a sample is the same, bit for bit, alone and in a batch") {
   }
 }
 
-TEST_CASE("first and second derivatives agree with differences along a direction") {
+TEST_CASE("first and second derivatives agree with differences along a direction" *
+          doctest::test_suite("double")) {
   const Context& context = context_of(Precision::f64);
   constexpr std::size_t frames = 8, batch = 2, channels = 96;
   const Offsets offsets{-1, 0, 1};

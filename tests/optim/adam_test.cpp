@@ -59,7 +59,7 @@ TEST_CASE("a schedule lowers the rate to a hundredth, linearly or along a cosine
   CHECK(s.factor(50, 0) == doctest::Approx(0.01 + 0.99 * (1 + std::sqrt(0.5)) / 2));
 }
 
-TEST_CASE("the rate factor scales a step") {
+TEST_CASE("the rate factor scales a step" * doctest::test_suite("double")) {
   const Context context({.precision = Precision::f64});
   double moved[2];
   for (const double factor : {1.0, 0.25}) {
@@ -72,7 +72,8 @@ TEST_CASE("the rate factor scales a step") {
   CHECK(moved[1] == doctest::Approx(0.25 * moved[0]));
 }
 
-TEST_CASE("five steps in double equal the formula to rounding, whatever the number of parameters") {
+TEST_CASE("five steps in double equal the formula to rounding, whatever the number of parameters" *
+          doctest::test_suite("double")) {
   const Context context({.precision = Precision::f64});
   for (const AdamOptions& options :
        {AdamOptions{}, AdamOptions{1e-2, 0.9, 0.999, 1e-8}, AdamOptions{0.1, 0, 0.5, 0.1}})

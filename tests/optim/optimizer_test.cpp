@@ -24,7 +24,7 @@ constexpr SgdOptions plain{.learning_rate = 0.5, .decay_every = 0, .clip_norm = 
 
 }  // namespace
 
-TEST_CASE("two optimizers take turns with a shared parameter") {
+TEST_CASE("two optimizers take turns with a shared parameter" * doctest::test_suite("double")) {
   Var shared = leaf({1, 2}), own = leaf({10}), other = leaf({20});
   Sgd first({{"own", &own}, {"shared", &shared}}, plain);
   Sgd second({{"shared", &shared}, {"other", &other}}, plain);
@@ -45,7 +45,8 @@ TEST_CASE("two optimizers take turns with a shared parameter") {
   CHECK(host(grad(loss, {shared})[0]) == std::vector<double>{3, 3});
 }
 
-TEST_CASE("clipping applies to the parameters, also after another optimizer has moved them") {
+TEST_CASE("clipping applies to the parameters, also after another optimizer has moved them" *
+          doctest::test_suite("double")) {
   Var p = leaf({-4, 0.25});
   Adam first({{"p", &p}});
   const Adam second({{"p", &p}});
@@ -53,7 +54,7 @@ TEST_CASE("clipping applies to the parameters, also after another optimizer has 
   CHECK(host(p) == std::vector<double>{-1, 0.25});
 }
 
-TEST_CASE("a parameter that nobody has moved costs no launch") {
+TEST_CASE("a parameter that nobody has moved costs no launch" * doctest::test_suite("double")) {
   Var p = leaf({1, 2}), q = leaf({3});
   Sgd sgd({{"p", &p}, {"q", &q}}, plain);
   const auto launches = [&](Sgd& optimizer) {
@@ -67,7 +68,7 @@ TEST_CASE("a parameter that nobody has moved costs no launch") {
   CHECK(launches(sgd) == 2);
 }
 
-TEST_CASE("a new optimizer takes over from one that is gone") {
+TEST_CASE("a new optimizer takes over from one that is gone" * doctest::test_suite("double")) {
   Var p = leaf({1, 2});
   auto first = std::make_unique<Sgd>(std::vector<NamedParameter>{{"p", &p}}, plain);
   first->step({constant({2, 2})});
@@ -78,7 +79,7 @@ TEST_CASE("a new optimizer takes over from one that is gone") {
   CHECK(host(p) == std::vector<double>{-1, 0});
 }
 
-TEST_CASE("a parameter listed twice is an error that names both places") {
+TEST_CASE("a parameter listed twice is an error that names both places" * doctest::test_suite("double")) {
   Var p = leaf({1, 2}), q = leaf({3}), alias = p;
   const std::string text = message_of([&] { Sgd({{"p", &p}, {"q", &q}, {"tied", &alias}}, plain); });
   CHECK(says(text, "Sgd: the parameters \"p\" and \"tied\" are one"));

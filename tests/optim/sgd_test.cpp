@@ -21,7 +21,8 @@ Var constant(const std::vector<double>& values) {
 
 }  // namespace
 
-TEST_CASE("the global gradient norm is clipped, and the learning rate decays") {
+TEST_CASE("the global gradient norm is clipped, and the learning rate decays" *
+          doctest::test_suite("double")) {
   Var p = Var::leaf(constant({1, 2}).value()), q = Var::leaf(constant({10}).value());
   Sgd sgd({{"p", &p}, {"q", &q}}, {.learning_rate = 0.1, .decay = 0.5, .decay_every = 2, .clip_norm = 3});
   const auto step = [&](std::vector<double> of_p, std::vector<double> of_q) {
@@ -47,7 +48,7 @@ TEST_CASE("the global gradient norm is clipped, and the learning rate decays") {
   CHECK(sgd.state().empty());
 }
 
-TEST_CASE("the defaults are those of residual seq2seq") {
+TEST_CASE("the defaults are those of residual seq2seq" * doctest::test_suite("double")) {
   Var p = Var::leaf(constant({0}).value());
   const Sgd sgd({{"p", &p}});
   CHECK(sgd.rate(0) == 0.005);
@@ -56,7 +57,8 @@ TEST_CASE("the defaults are those of residual seq2seq") {
   CHECK(sgd.options().clip_norm == 5);
 }
 
-TEST_CASE("without clipping and decay: plain descent; large parameters; no reads from the device") {
+TEST_CASE("without clipping and decay: plain descent; large parameters; no reads from the device" *
+          doctest::test_suite("double")) {
   for (const double limit : {0.0, 2.0}) {
     std::vector<double> values(10'001), gradient;
     double square = 0;
@@ -80,7 +82,7 @@ TEST_CASE("without clipping and decay: plain descent; large parameters; no reads
   }
 }
 
-TEST_CASE("invalid options and gradients are rejected") {
+TEST_CASE("invalid options and gradients are rejected" * doctest::test_suite("double")) {
   Var p = Var::leaf(constant({1, 2}).value());
   CHECK(says(message_of([] { Sgd({}); }), "Sgd: no parameters"));
   CHECK(says(message_of([&] { Sgd({{"p", &p}}, {.learning_rate = 0}); }), "Sgd: learning rate 0"));

@@ -23,7 +23,8 @@ Var constant(const std::vector<double>& values) {
 
 }  // namespace
 
-TEST_CASE("the mean follows the weights by the share of each step, and the first step is all of it") {
+TEST_CASE("the mean follows the weights by the share of each step, and the first step is all of it" *
+          doctest::test_suite("double")) {
   for (const double decay : {0.5, 0.9, 0.999}) {
     CAPTURE(decay);
     Var p = leaf({1, 2, 3}), q = leaf({-4});
@@ -56,7 +57,7 @@ TEST_CASE("the mean follows the weights by the share of each step, and the first
   }
 }
 
-TEST_CASE("weights that stay are their own mean") {
+TEST_CASE("weights that stay are their own mean" * doctest::test_suite("double")) {
   Var p = leaf({0.1, -7});
   Sgd sgd({{"p", &p}}, {.learning_rate = 1});
   WeightMean mean(sgd, 0.999);

@@ -4,6 +4,8 @@
 #include <limits>
 #include <random>
 
+#include "../support/precision.hpp"
+
 #include "motiongan/data/dataset.hpp"
 #include "motiongan/data/dataset_build.hpp"
 #include "motiongan/procedural/procedural.hpp"
@@ -85,7 +87,7 @@ TEST_CASE("the device agrees with plain loops over frames, dimensions and shifts
       {7, 1, 1, 0, RootRotation::velocity, true}, {5, 6, 33, 4, RootRotation::expmap, true},
       {6, 3, 2, 3, RootRotation::expmap, false},  {2, 4, 5, 0, RootRotation::heading, true},
       {1, 3, 2, 0, RootRotation::heading, true}};
-  for (const Precision precision : {Precision::f32, Precision::f64}) {
+  for (const Precision precision : testing::precisions()) {
     ContextOptions options;
     options.precision = precision;
     const Context context(options);

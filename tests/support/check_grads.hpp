@@ -3,6 +3,8 @@
 #include <motiongan/autograd/grad.hpp>
 #include <random>
 
+#include "precision.hpp"
+
 namespace motiongan::testing {
 
 using Function = std::function<Var(const std::vector<Var>&)>;
@@ -73,12 +75,6 @@ inline double check_grads(const Context& context, const Function& f, const std::
       worst = std::max(worst, check_grads(context, derivative, with_seed, order - 1, step));
     }
   return worst;
-}
-
-/// A double-precision context shared by the tests of a program.
-inline const Context& double_context() {
-  static const Context context({.precision = Precision::f64});
-  return context;
 }
 
 }  // namespace motiongan::testing

@@ -30,7 +30,8 @@ Var linear_critic(const Var& x, const Var& w) {
 
 }  // namespace
 
-TEST_CASE("the penalty of a linear critic is (|w| - 1)^2, with gradient 2 (|w| - 1) w / |w|") {
+TEST_CASE("the penalty of a linear critic is (|w| - 1)^2, with gradient 2 (|w| - 1) w / |w|" *
+          doctest::test_suite("double")) {
   const std::vector<double> weights{0.5, -1, 2, 0.25, -0.75, 1.5};
   const Var w = Var::leaf(Tensor::from(double_context(), {frames, channels}, weights));
   double norm = 0;
@@ -45,7 +46,8 @@ TEST_CASE("the penalty of a linear critic is (|w| - 1)^2, with gradient 2 (|w| -
     CHECK(gradient[i] == doctest::Approx(2 * (norm - 1) * weights[i] / norm).epsilon(1e-11));
 }
 
-TEST_CASE("the norm is over all frames and channels of each sample separately") {
+TEST_CASE("the norm is over all frames and channels of each sample separately" *
+          doctest::test_suite("double")) {
   // D(x_b) = <x_b, x_b> / 2 has the gradient x_b, so the norm differs between samples.
   const Tensor x = motion(0);
   const std::vector<double> xs = x.to_host<double>();
@@ -63,7 +65,7 @@ TEST_CASE("the norm is over all frames and channels of each sample separately") 
   CHECK(gradient_penalty(judge, Var::leaf(x)).item() == doctest::Approx(expected).epsilon(1e-11));
 }
 
-TEST_CASE("a constant critic has penalty 1 and a finite gradient") {
+TEST_CASE("a constant critic has penalty 1 and a finite gradient" * doctest::test_suite("double")) {
   const Var w = Var::leaf(full(double_context(), {frames, channels}, 0));
   const Var penalty =
       gradient_penalty([&](const Var& m) { return linear_critic(m, w); }, Var::leaf(motion(2)));
@@ -71,7 +73,8 @@ TEST_CASE("a constant critic has penalty 1 and a finite gradient") {
   for (double v : host(grad(penalty, {w})[0])) CHECK(std::isfinite(v));
 }
 
-TEST_CASE("the gradient of a nonlinear critic's penalty equals central differences") {
+TEST_CASE("the gradient of a nonlinear critic's penalty equals central differences" *
+          doctest::test_suite("double")) {
   const testing::Function penalty = [](const std::vector<Var>& v) {
     const Var x = Var::leaf(v[1].value());
     return gradient_penalty([&](const Var& m) { return tanh(linear_critic(m, v[0])); }, x);
@@ -83,7 +86,7 @@ TEST_CASE("the gradient of a nonlinear critic's penalty equals central differenc
   CHECK(testing::check_grads(double_context(), by_weights, {w}, 2) < 1e-7);
 }
 
-TEST_CASE("interpolate: real where eps is 1, fake where it is 0, a leaf") {
+TEST_CASE("interpolate: real where eps is 1, fake where it is 0, a leaf" * doctest::test_suite("double")) {
   const Tensor real = motion(1), fake = motion(2), eps = constant({batch}, {0, 1, 0.25, 0.5}).value();
   const Var mixed = interpolate(real, fake, eps);
   CHECK(mixed.requires_grad());
@@ -96,7 +99,7 @@ TEST_CASE("interpolate: real where eps is 1, fake where it is 0, a leaf") {
   }
 }
 
-TEST_CASE("the terms of the critic's loss") {
+TEST_CASE("the terms of the critic's loss" * doctest::test_suite("double")) {
   const std::vector<double> weights{1, 0, 0, 2, 0, -2};  // |w| = 3
   const Var w = Var::leaf(Tensor::from(double_context(), {frames, channels}, weights));
   const CriticFn judge = [&](const Var& m) { return linear_critic(m, w); };

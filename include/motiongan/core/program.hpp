@@ -153,7 +153,13 @@ class ProgramCache {
   std::string options(const char* standard) const {
     return concat(standard, "-DREAL=", precision_ == Precision::f64 ? "double" : "float",
                   precision_ == Precision::f64 ? " -DREAL_IS_DOUBLE" : "", " -DVW=", vector_width(),
-                  device_.is_cpu() ? " -DDEVICE_IS_CPU" : "");
+                  device_.is_cpu() ? " -DDEVICE_IS_CPU" : "", can_prefetch() ? " -DCAN_PREFETCH" : "");
+  }
+
+  /// Whether the compiler knows __builtin_prefetch: others abort the process, such as Mesa's.
+  bool can_prefetch() const {
+    return device_.is_cpu() &&
+           (is_pocl(device_.platform_name) || device_.platform_name == "Intel(R) OpenCL");
   }
 
   cl_int compile(cl_program program, const char* standard) const {
