@@ -1,5 +1,18 @@
 // motiongan: generative adversarial networks of human motion over OpenCL. Includes the whole library.
 #pragma once
+
+/// Tensors, derivatives, networks, models, training and generation.
+namespace motiongan {
+/// Files that hold named tensors and options.
+namespace io {}
+/// Clips: skeletons, rotations, files of motion, data sets, and what is done to motion.
+namespace motion {}
+/// The figures that the papers report.
+namespace paper {}
+/// Motion to look at: HTML pages and pictures.
+namespace view {}
+}  // namespace motiongan
+
 #include "motiongan/core/context.hpp"
 #include "motiongan/core/device.hpp"
 #include "motiongan/core/error.hpp"

@@ -44,9 +44,11 @@ inline Tensor full(const Context& context, Shape shape, double value) {
   detail::fill(out, value);
   return out;
 }
+/// A constant of zeros.
 inline Var zeros(const Context& context, Shape shape) {
   return Var::constant(full(context, std::move(shape), 0));
 }
+/// A constant of ones.
 inline Var ones(const Context& context, Shape shape) {
   return Var::constant(full(context, std::move(shape), 1));
 }
@@ -67,11 +69,14 @@ inline Var weighted_sum(const Var& x, double a, const Var& y, double b) {
                 });
 }
 
+/// Sums and differences of equal shapes, and multiples. Throw Error if the shapes differ.
+/// \{
 inline Var operator+(const Var& x, const Var& y) { return weighted_sum(x, 1, y, 1); }
 inline Var operator-(const Var& x, const Var& y) { return weighted_sum(x, 1, y, -1); }
 inline Var operator-(const Var& x) { return affine(x, -1); }
 inline Var operator*(double a, const Var& x) { return affine(x, a); }
 inline Var operator+(const Var& x, double b) { return affine(x, 1, b); }
 inline Var operator-(const Var& x, double b) { return affine(x, 1, -b); }
+/// \}
 
 }  // namespace motiongan

@@ -8,6 +8,7 @@
 
 namespace motiongan {
 
+/// Options of grad().
 struct GradOptions {
   bool create_graph = false;  ///< record the backward pass, so that the gradients can be differentiated again
 };

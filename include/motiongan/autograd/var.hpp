@@ -31,15 +31,18 @@ class Var {
   /// A leaf with gradient: a parameter, or an input to differentiate with respect to.
   static Var leaf(Tensor value);
 
+  /// Whether it has no value at all, as one that was constructed without arguments.
   bool empty() const { return node_ == nullptr; }
   const Tensor& value() const;
   const Shape& shape() const { return value().shape(); }
   std::size_t dim(std::size_t i) const { return value().dim(i); }
   std::size_t size() const { return value().size(); }
   const Context& context() const { return value().context(); }
+  /// Whether it is a leaf, or was computed from one while gradients were recorded.
   bool requires_grad() const;
   /// The same value without its graph; no gradient flows through it.
   Var detach() const { return constant(value()); }
+  /// The only element. Throws Error if there are several.
   double item() const { return value().item(); }
 
   const std::shared_ptr<Node>& node() const { return node_; }
@@ -51,11 +54,11 @@ class Var {
 
 /// One value and the operation that computed it.
 struct Node : std::enable_shared_from_this<Node> {
-  Tensor value;
-  std::vector<Var> inputs;  ///< empty for leaves and constants
-  Vjp vjp;
-  const char* operation = "constant";
-  bool requires_grad = false;
+  Tensor value;                        ///< what was computed
+  std::vector<Var> inputs;             ///< empty for leaves and constants
+  Vjp vjp;                             ///< how gradients go on to the inputs
+  const char* operation = "constant";  ///< the name in messages
+  bool requires_grad = false;          ///< whether any input does, or it is a leaf
   unsigned frozen = 0;         ///< lifetimes of Frozen around it: grad() with respect to it is an error
   std::size_t id = next_id();  ///< increases with creation: a node's id is larger than its inputs'
 
@@ -117,6 +120,7 @@ inline bool& recording() {
 /// While an object of this class exists, operations of this thread record no graph.
 class NoGrad {
  public:
+  /// Stops recording until the object ends; with `off` false, changes nothing.
   explicit NoGrad(bool off = true) : before_(detail::recording()) { detail::recording() = before_ && !off; }
   ~NoGrad() { detail::recording() = before_; }
   NoGrad(const NoGrad&) = delete;

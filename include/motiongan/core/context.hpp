@@ -22,11 +22,12 @@
 
 namespace motiongan {
 
+/// Options of a Context.
 struct ContextOptions {
-  std::string device = {};  ///< see choose_device; empty: MOTIONGAN_DEVICE
-  Precision precision = Precision::f32;
-  std::size_t memory_limit = 0;  ///< bytes; 0: MOTIONGAN_MEMORY_MB, else the device's global memory
-  bool verbose = false;          ///< print the chosen device to standard error
+  std::string device = {};               ///< see choose_device; empty: MOTIONGAN_DEVICE
+  Precision precision = Precision::f32;  ///< of all tensors and kernels
+  std::size_t memory_limit = 0;          ///< bytes; 0: MOTIONGAN_MEMORY_MB, else the device's global memory
+  bool verbose = false;                  ///< print the chosen device to standard error
   /// Elements of one tensor; 0 or more than most_elements: most_elements. For tests.
   std::size_t element_limit = 0;
 };
@@ -201,11 +202,14 @@ class Context {
   std::size_t real_size() const { return state_->precision == Precision::f64 ? 8 : 4; }
   /// The most elements of a tensor.
   std::size_t element_limit() const { return state_->element_limit; }
+  /// Elements that a work-item of an elementwise kernel handles.
   unsigned vector_width() const { return state_->programs->vector_width(); }
   cl_command_queue queue() const { return state_->queue.get(); }
+  /// What was launched, copied and allocated so far.
   const ContextStatistics& statistics() const { return state_->statistics; }
   /// Adds to statistics().gemm_flops, which benchmarks compare with the device's peak.
   void count_gemm_flops(double flops) const { state_->statistics.gemm_flops += flops; }
+  /// Whether both are copies of the same context.
   bool operator==(const Context& other) const { return state_ == other.state_; }
 
   /// "NAME (PLATFORM), 2 compute units, 6.1 GB, float"
@@ -246,6 +250,7 @@ class Context {
     check(clEnqueueMarkerWithWaitList(queue(), 0, nullptr, &event), "clEnqueueMarkerWithWaitList");
     return ClEvent(event);
   }
+  /// Blocks until the commands before the event are done.
   void wait_for(const ClEvent& done) const {
     const cl_event event = done.get();
     check(clWaitForEvents(1, &event), "clWaitForEvents");

@@ -20,14 +20,14 @@ struct Device {
   std::string platform_name;  ///< "Portable Computing Language", "NVIDIA CUDA", ...
   std::string version;        ///< the device's OpenCL version string
   std::string c_version;      ///< the version of OpenCL C that it compiles, as a string
-  cl_device_type type = 0;
+  cl_device_type type = 0;    ///< a CPU, a GPU or another
   cl_uint compute_units = 0;
   cl_ulong global_memory = 0;      ///< bytes
   cl_ulong max_allocation = 0;     ///< bytes in one buffer
   cl_uint native_float_width = 1;  ///< floats per vector register
-  bool has_double = false;
-  bool available = true;     ///< CL_DEVICE_AVAILABLE
-  bool has_compiler = true;  ///< CL_DEVICE_COMPILER_AVAILABLE
+  bool has_double = false;         ///< whether Precision::f64 works
+  bool available = true;           ///< CL_DEVICE_AVAILABLE
+  bool has_compiler = true;        ///< CL_DEVICE_COMPILER_AVAILABLE
 
   bool is_cpu() const { return (type & CL_DEVICE_TYPE_CPU) != 0; }
   bool is_gpu() const { return (type & CL_DEVICE_TYPE_GPU) != 0; }
@@ -62,8 +62,8 @@ inline std::string lower(std::string_view text) {
 /// The devices found on all platforms, in the ICD loader's order, and what failed while looking: a line for
 /// every platform and device that could not be listed.
 struct DeviceSurvey {
-  std::vector<Device> devices;
-  std::vector<std::string> problems;
+  std::vector<Device> devices;        ///< those that could be listed
+  std::vector<std::string> problems;  ///< one for each platform and device that could not
 };
 
 namespace detail {
@@ -239,6 +239,7 @@ inline Device choose_device(const DeviceSurvey& survey, std::string_view wish) {
               problems.empty() ? "" : "\nWhat failed while looking for others:", problems);
 }
 
+/// The one of `devices` that `wish` selects.
 inline Device choose_device(const std::vector<Device>& devices, std::string_view wish) {
   return choose_device(DeviceSurvey{devices, {}}, wish);
 }

@@ -105,6 +105,7 @@ std::string concat(const Parts&... parts) {
 /// The library's exception. The message says what was found, what was expected and what to do.
 class Error : public std::runtime_error {
  public:
+  /// The message is the parts, one after another: text, numbers, shapes.
   template <class... Parts>
   explicit Error(const Parts&... parts) : std::runtime_error(concat(parts...)) {}
 };

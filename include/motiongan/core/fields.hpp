@@ -51,7 +51,7 @@ E enum_from(std::string_view name, std::string_view what) {
 /// The interval of permitted numbers: both ends included, unless `low_open` excludes the lower one.
 struct Range {
   double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
-  bool low_open = false;
+  bool low_open = false;  ///< `low` itself is not permitted
 
   static Range at_least(double low) { return {.low = low}; }
   static Range above(double low) { return {.low = low, .low_open = true}; }
@@ -60,6 +60,7 @@ struct Range {
   bool contains(double value) const {
     return (low_open ? value > low : value >= low) && value <= high;  // false for NaN
   }
+  /// Whether there is an end at all.
   bool limits() const { return low > -std::numeric_limits<double>::infinity() || high < 1e300; }
 
   /// "at least 1", "above 0", "0 to 1".
@@ -84,26 +85,27 @@ struct FieldInfo {
 
 /// A value in force from `iteration` until the next stage begins.
 struct ScheduleStage {
-  std::size_t iteration = 0;
+  std::size_t iteration = 0;  ///< the first one, counted from 0
   double value = 0;
   bool operator==(const ScheduleStage&) const = default;
 };
 
 /// Type-erased access to an enum or an optional enum by name.
 struct EnumAccess {
-  void* at;
-  std::string (*get)(const void*);
-  void (*set)(void*, std::string_view, std::string_view what);
-  std::span<const char* const> names;
+  void* at;                                                     ///< the member
+  std::string (*get)(const void*);                              ///< its name
+  void (*set)(void*, std::string_view, std::string_view what);  ///< by name; `what`: its name in messages
+  std::span<const char* const> names;                           ///< all of them
 };
 
 /// A member of an options struct with its description. Refers to the struct, which must outlive the field.
 struct Field {
+  /// What a member can be.
   using Access =
       std::variant<bool*, std::optional<bool>*, std::size_t*, double*, std::string*, std::filesystem::path*,
                    std::vector<std::string>*, std::vector<ScheduleStage>*, EnumAccess>;
-  FieldInfo info;
-  Access access;
+  FieldInfo info;  ///< its key, help and range
+  Access access;   ///< the member
 
   /// "--critic-steps"; "" if the command has no such option.
   std::string option() const {
@@ -142,6 +144,7 @@ struct Field {
     return std::visit(Print{}, access);
   }
 
+  /// Whether both members have the same type and value.
   bool equals(const Field& other) const {
     const auto same = [&]<class T>(const T& mine) {
       const T& theirs = std::get<T>(other.access);
@@ -180,6 +183,8 @@ struct Field {
 /// The fields of an options struct, in declaration order.
 class FieldList {
  public:
+  /// Adds a member. It must outlive the list.
+  /// \{
   void add(bool& member, FieldInfo info) { fields_.push_back({std::move(info), &member}); }
   void add(std::optional<bool>& member, FieldInfo info) { fields_.push_back({std::move(info), &member}); }
   void add(std::size_t& member, FieldInfo info) { fields_.push_back({std::move(info), &member}); }
@@ -192,6 +197,8 @@ class FieldList {
   void add(std::vector<ScheduleStage>& member, FieldInfo info) {
     fields_.push_back({std::move(info), &member});
   }
+  /// \}
+
   /// An enum, by the names in its table.
   template <class E>
   requires std::is_enum_v<E>

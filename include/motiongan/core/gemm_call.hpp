@@ -12,16 +12,17 @@ namespace motiongan {
 /// C[m,n] = epilogue((accumulate ? C : 0) + sum over segments s of A_s[m,k] * B_s[k,n]).
 /// The elements of C must not overlap those of A, B or the residual.
 struct GemmCall {
-  std::size_t m = 0, n = 0, k = 0;
+  std::size_t m = 0, n = 0, k = 0;  ///< C is m x n; k is the length of the sums
   /// Element (i, p) of A is at a_offset[s] + i * a_ld + p or, when a_transposed, at a_offset[s] + p * a_ld +
   /// i. Element (p, j) of B is at b_offset[s] + p * b_ld + j or, when b_transposed, at b_offset[s] + j * b_ld
   /// + p. Element (i, j) of C is at c_offset + i * c_ld + j.
   Tensor a = {}, b = {}, c = {};
   std::size_t a_ld = 0, b_ld = 0, c_ld = 0;  ///< distance between stored rows, in elements
   bool a_transposed = false, b_transposed = false;
-  std::size_t segments = 1;  ///< products summed, 1 to 4 (taps of a convolution)
-  std::array<std::size_t, 4> a_offset{}, b_offset{};
-  std::size_t c_offset = 0;
+  std::size_t segments = 1;                           ///< products summed, 1 to 4 (taps of a convolution)
+  std::array<std::size_t, 4> a_offset{}, b_offset{};  ///< where each segment of A and B begins, in elements
+  std::size_t c_offset = 0;                           ///< where C begins
+  /// Problems of equal size, and the elements from one to the next.
   std::size_t batch = 1, a_batch_stride = 0, b_batch_stride = 0, c_batch_stride = 0;
   bool accumulate = false;  ///< add to the present content of C
   /// pack_b() stores B in 16 bits, rounded to bfloat16. If B holds such values, as after round_to_bf16(),
@@ -34,7 +35,7 @@ struct GemmCall {
   /// The epilogue, in this order: + bias[j], + residual[residual_offset + i * residual_ld + j], ReLU.
   Tensor bias = {}, residual = {};  ///< optional; shared by all problems of the batch
   std::size_t residual_offset = 0, residual_ld = 0;
-  bool relu = false;
+  bool relu = false;  ///< set negative elements to 0 at last
   /// Optional second output, ReLU(C): m * n elements from rectified_offset. Needs batch 1 and c_ld = n.
   Tensor rectified = {};
   std::size_t rectified_offset = 0;

@@ -17,7 +17,7 @@ struct KernelReal {
 /// Global and local sizes of a launch. Local sizes are fixed per kernel: PoCL recompiles for each new one.
 struct LaunchGrid {
   cl_uint dimensions;
-  std::array<std::size_t, 3> global, local;
+  std::array<std::size_t, 3> global, local;  ///< work-items in all, and in a work-group
 
   /// At least `n` work-items in one dimension, in work-groups of 64; kernels skip those past n.
   static LaunchGrid items(std::size_t n) { return {1, {(n + 63) / 64 * 64, 1, 1}, {64, 1, 1}}; }

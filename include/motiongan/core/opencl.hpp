@@ -138,11 +138,14 @@ class Owned {
   Handle handle_ = nullptr;
 };
 
+/// OpenCL objects that are released with their owner.
+/// \{
 using ClContext = Owned<cl_context, clReleaseContext>;
 using ClQueue = Owned<cl_command_queue, clReleaseCommandQueue>;
 using ClProgram = Owned<cl_program, clReleaseProgram>;
 using ClKernel = Owned<cl_kernel, clReleaseKernel>;
 using ClBuffer = Owned<cl_mem, clReleaseMemObject>;
 using ClEvent = Owned<cl_event, clReleaseEvent>;
+/// \}
 
 }  // namespace motiongan

@@ -22,6 +22,7 @@ enum class Precision { f32, f64 };
 /// compiled with cl/elementwise.cl.
 class ElementwiseKernel {
  public:
+  /// `expression` is OpenCL C over the inputs v and w and the numbers a and b.
   ElementwiseKernel(const char* name, int inputs, const char* expression) : name_(name) {
     all()[name] = concat(inputs == 1 ? "UNARY(" : "BINARY(", name, ", ", expression, ")\n");
   }

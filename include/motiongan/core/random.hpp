@@ -8,6 +8,7 @@
 
 namespace motiongan {
 
+/// Four random words, or a counter of 128 bits.
 using PhiloxWords = std::array<std::uint32_t, 4>;
 
 /// Philox 4x32-10 (Salmon et al. 2011): four random words for a 128-bit counter and a 64-bit key.
@@ -39,25 +40,30 @@ enum class RandomStream : std::uint32_t {
   noise = 32
 };
 
+/// The stream `level` places further, such as that of a level of noise.
 inline RandomStream operator+(RandomStream stream, std::size_t level) {
   return static_cast<RandomStream>(static_cast<std::uint32_t>(stream) + static_cast<std::uint32_t>(level));
 }
 
 /// Identifies an array of random numbers: seed, stream and step, and where its samples and frames begin.
 struct RandomKey {
-  std::uint64_t seed = 0;
-  RandomStream stream = RandomStream::noise;
-  std::uint32_t step = 0;  ///< at most 2^24 - 1; the stream fills the low 8 bits of the same word
-  std::uint32_t first_sample = 0;
-  std::int32_t first_frame = 0;
+  std::uint64_t seed = 0;                     ///< the user's
+  RandomStream stream = RandomStream::noise;  ///< the purpose
+  std::uint32_t step = 0;          ///< at most 2^24 - 1; the stream fills the low 8 bits of the same word
+  std::uint32_t first_sample = 0;  ///< of the array
+  std::int32_t first_frame = 0;    ///< of the array
 
+  /// The same key for another purpose.
   RandomKey with(RandomStream other) const {
     RandomKey key = *this;
     key.stream = other;
     return key;
   }
+  /// The halves of the seed, as kernels take them.
+  /// \{
   cl_uint seed_low() const { return static_cast<cl_uint>(seed); }
   cl_uint seed_high() const { return static_cast<cl_uint>(seed >> 32); }
+  /// \}
 };
 
 /// One random word, on the host; `sample` and `position` as on the device.

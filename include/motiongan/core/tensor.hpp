@@ -68,11 +68,14 @@ class Tensor {
     return from(context, std::move(shape), std::span<const T>(values));
   }
 
+  /// Whether it has no memory, as one that was constructed without arguments.
   bool empty() const { return storage_ == nullptr; }
   const Context& context() const { return *context_; }
   const Shape& shape() const { return shape_; }
   std::size_t size() const { return size_; }
+  /// The size of axis `i`.
   std::size_t dim(std::size_t i) const { return shape_.at(i); }
+  /// The number of axes.
   std::size_t rank() const { return shape_.size(); }
   cl_mem buffer() const { return storage_->buffer(); }
   /// Whether both are parts of one memory; in a context that only counts, buffer() does not tell.
@@ -124,6 +127,7 @@ class Tensor {
     return to_host<double>()[0];
   }
 
+  /// The shape, for messages.
   std::string describe() const { return to_string(shape_); }
 
  private:
@@ -176,6 +180,7 @@ class Indices {
   std::size_t size() const { return size_; }
   const Context& context() const { return *context_; }
   cl_mem buffer() const { return storage_->buffer(); }
+  /// Uploads without waiting for the queue. Throws Error if the number of values is not size().
   void write(std::span<const cl_int> values) {
     require(values.size() == size_, values.size(), " values given for ", size_, " indices");
     context_->write(buffer(), 0, values.data(), values.size_bytes());
@@ -202,6 +207,7 @@ class Indices {
     if (range.most > most) refuse(operation, range.most, range.most_at, least, most);
   }
 
+  /// Downloads all values; waits for the queue.
   std::vector<cl_int> to_host() const {
     std::vector<cl_int> values(size_);
     context_->read(buffer(), 0, values.data(), size_ * sizeof(cl_int));

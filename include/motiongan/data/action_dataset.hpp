@@ -20,9 +20,9 @@ struct ActionPrior;
 /// One clip at the data set's rate.
 struct ActionClip {
   std::string id;
-  std::string subject;    ///< empty unless the options need subjects
-  std::size_t label = 0;  ///< index into format.classes
-  std::size_t frames = 0;
+  std::string subject;            ///< empty unless the options need subjects
+  std::size_t label = 0;          ///< index into format.classes
+  std::size_t frames = 0;         ///< at the rate of the data set
   std::vector<float> poses;       ///< [frames, kept dof], normalised
   Skeleton skeleton;              ///< with the clip's own bone lengths
   std::vector<RootTrack> places;  ///< [frames], the root's track
@@ -38,8 +38,8 @@ class ActionDataset {
  public:
   PositionFormat format;  ///< skeleton of the first clip used
   ActionDatasetOptions options;
-  std::vector<ActionClip> train;  ///< in file order
-  std::vector<ActionClip> test;
+  std::vector<ActionClip> train;             ///< in file order
+  std::vector<ActionClip> test;              ///< held out, in file order
   std::vector<SkippedClip> skipped;          ///< clips that are too short
   std::vector<SkippedClip> bad;              ///< files that could not be read, with clips.skip_bad
   std::vector<SkippedClip> other_skeletons;  ///< clips left out by clips.skeleton_of

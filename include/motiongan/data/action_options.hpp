@@ -23,9 +23,9 @@ struct ActionDatasetOptions {
   double train_share = 0.67;                 ///< fraction of the clips; the rest is for testing
   bool by_subject = false;                   ///< whether all clips of a subject go to the same part
   std::vector<std::string> test_subjects{};  ///< these, and only these, are for testing
-  std::uint64_t split_seed = 1;
-  ClipOptions clips{};                 ///< how the files are read
-  std::vector<std::string> classes{};  ///< keep only clips of these; empty: all
+  std::uint64_t split_seed = 1;              ///< decides which clips are for testing
+  ClipOptions clips{};                       ///< how the files are read
+  std::vector<std::string> classes{};        ///< keep only clips of these; empty: all
 
   void list_fields(FieldList& list) {
     list.add(

@@ -14,11 +14,12 @@ namespace motiongan {
 
 /// A number of frames of one class.
 struct ActionPiece {
-  std::size_t label = 0;  ///< index of the class
-  std::size_t frames = 0;
+  std::size_t label = 0;   ///< index of the class
+  std::size_t frames = 0;  ///< how long it lasts
   friend bool operator==(const ActionPiece&, const ActionPiece&) = default;
 };
 
+/// Classes one after another, each for a number of frames.
 using ActionSchedule = std::vector<ActionPiece>;
 
 /// Total number of frames.

@@ -16,8 +16,8 @@ namespace motiongan::motion {
 
 /// What determines the part a clip is in.
 struct SplitClip {
-  std::size_t label = 0;
-  std::string subject;
+  std::size_t label = 0;  ///< index of its class
+  std::string subject;    ///< who moves; empty: not known
 };
 
 /// Splits each class separately (split_clips): whether each clip is for training, [clips]. A class of one

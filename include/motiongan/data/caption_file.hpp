@@ -36,7 +36,7 @@ struct Caption {
 
 /// A caption and the id of its clip.
 struct CaptionLine {
-  std::string id;
+  std::string id;  ///< as written in the file
   Caption caption;
   std::size_t line = 0;  ///< in its file, from 1; 0 if not known
 };

@@ -46,7 +46,7 @@ struct CaptionReport {
 
 /// The captions of each clip.
 struct CaptionMatch {
-  std::vector<std::vector<Caption>> of_clip;
+  std::vector<std::vector<Caption>> of_clip;  ///< in the order of the clips
   CaptionReport report;
 };
 

@@ -31,7 +31,7 @@ namespace motiongan::motion {
 /// What a data set changes in a clip to make it like the others.
 struct LoadChange {
   std::optional<UpAxis> up{};  ///< instead of the one detected
-  double scale = 1;
+  double scale = 1;            ///< lengths are multiplied by it
   bool operator==(const LoadChange&) const = default;
 };
 
@@ -52,27 +52,28 @@ inline LoadedMotion in_memory(const Motion& motion, const LoadChange& change) {
 /// A candidate clip: its name and how to load its motion.
 struct ClipSource {
   std::string id;
-  std::string name;                   ///< path of the file, if any, for captions from names
-  std::vector<std::string> captions;  ///< those it comes with, may be empty
-  std::function<LoadedMotion(const LoadChange&)> load;
+  std::string name;                                     ///< path of the file, if any, for captions from names
+  std::vector<std::string> captions;                    ///< those it comes with, may be empty
+  std::function<LoadedMotion(const LoadChange&)> load;  ///< reads it; throws Error if that fails
   std::string whole = {};               ///< id of the clip that this is a part of; empty if it is none
   std::vector<CaptionPart> parts = {};  ///< if captions describe only parts of the clip: these parts
 };
 
 /// A clip's poses, and what is needed to match it with others.
 struct EncodedClip {
-  Skeleton skeleton;
-  double source_rate = 0;
-  std::size_t source_frames = 0;
-  std::size_t stride = 0;      ///< frames of `poses` between two frames of a window
-  int root = 0;                ///< the joint that travels
-  double height = 0;           ///< of the body, see body_height
-  double unit_metres = 0;      ///< if the file says so; 0: unknown
-  std::optional<UpAxis> up{};  ///< of the file; unset: unknown
-  std::size_t dropped = 0;     ///< frames removed at the start
-  std::vector<std::string> notes{};
-  std::size_t frames = 0;     ///< of `poses`; 0 if the clip is too short
-  std::vector<double> poses;  ///< [frames, full dof]
+  Skeleton skeleton;                 ///< of the clip
+  double source_rate = 0;            ///< frames per second of the file
+  std::size_t source_frames = 0;     ///< at that rate
+  std::size_t stride = 0;            ///< frames of `poses` between two frames of a window
+  int root = 0;                      ///< the joint that travels
+  double height = 0;                 ///< of the body, see body_height
+  double unit_metres = 0;            ///< if the file says so; 0: unknown
+  std::optional<UpAxis> up{};        ///< of the file; unset: unknown
+  std::size_t dropped = 0;           ///< frames removed at the start
+  std::vector<std::string> notes{};  ///< what was corrected
+  std::size_t frames = 0;            ///< of `poses`; 0 if the clip is too short
+  std::vector<double> poses;         ///< [frames, full dof]
+  /// The length of the clip.
   double seconds() const { return source_frames == 0 ? 0 : static_cast<double>(source_frames) / source_rate; }
 };
 

@@ -38,8 +38,8 @@ class Dataset {
  public:
   MotionFormat format;  ///< skeleton of the first clip used, statistics and vocabulary of the training clips
   DatasetOptions options;
-  std::vector<DatasetClip> train;  ///< in the order of their ids, then those derived from them
-  std::vector<DatasetClip> test;
+  std::vector<DatasetClip> train;            ///< in the order of their ids, then those derived from them
+  std::vector<DatasetClip> test;             ///< held out, in the order of their ids
   std::vector<SkippedClip> skipped;          ///< clips that are too short
   std::vector<SkippedClip> bad;              ///< files that could not be read, with clips.skip_bad
   std::vector<SkippedClip> other_skeletons;  ///< clips left out by clips.skeleton_of

@@ -9,7 +9,7 @@ namespace motiongan::motion {
 /// One clip, normalised, at the data set's common source rate.
 struct DatasetClip {
   std::string id;
-  std::vector<std::string> captions;
+  std::vector<std::string> captions;        ///< its descriptions
   std::vector<std::vector<int>> sentences;  ///< the captions as word indices of the vocabulary
   std::size_t frames = 0;
   std::vector<float> poses;  ///< [frames, kept dof]

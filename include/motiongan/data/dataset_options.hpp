@@ -10,6 +10,7 @@
 
 namespace motiongan::motion {
 
+/// Options of a Dataset.
 struct DatasetOptions {
   std::size_t frames = 32;  ///< N, frames of a window
   double rate = 4.0;        ///< frames per second of a window
@@ -19,13 +20,14 @@ struct DatasetOptions {
   bool root_position = true;  ///< whether the root's position is part of a pose
   /// expmap as in the papers, velocity for long motion; not set: heading.
   std::optional<RootRotation> root_rotation = {};
-  double train_share = 0.67;  ///< fraction of the clips; the rest is for testing
-  std::uint64_t split_seed = 1;
-  bool mirror = false;    ///< train on the mirror image of every training clip too
+  double train_share = 0.67;     ///< fraction of the clips; the rest is for testing
+  std::uint64_t split_seed = 1;  ///< decides which clips are for testing
+  bool mirror = false;           ///< train on the mirror image of every training clip too
   double stretch = 0;     ///< above 0: train on every training clip also 1 + stretch and 1 - stretch as fast
   bool balanced = false;  ///< draw every description equally often, instead of every clip
   ClipOptions clips{};    ///< how the files are read
 
+  /// The form of the root, with the default resolved.
   RootRotation rotation() const { return root_rotation.value_or(RootRotation::heading); }
 
   void list_fields(FieldList& list) {

@@ -25,9 +25,9 @@ struct MotionFormat {
   static constexpr std::size_t most_frames = 65536, most_dof = 65536, most_words = 1'000'000,
                                most_descriptions = 500;
 
-  PoseLayout layout;  ///< holds the skeleton
-  Normalizer normalizer;
-  Vocabulary vocabulary;
+  PoseLayout layout;      ///< holds the skeleton
+  Normalizer normalizer;  ///< mean and standard deviation of each dimension
+  Vocabulary vocabulary;  ///< the words of the training captions
   /// Distinct training captions, those of most clips first, at most most_descriptions; empty if unknown.
   std::vector<std::string> descriptions = {};
   double rate = 0;         ///< frames per second of a window
@@ -41,7 +41,7 @@ struct MotionFormat {
 
   /// Smallest and largest normalised value of each kept dimension over the training windows; empty if
   /// unknown.
-  std::vector<double> low, high;
+  std::vector<double> low, high;  ///< [kept dof] each
 
   const Skeleton& skeleton() const { return layout.skeleton(); }
 

@@ -58,6 +58,7 @@ inline void space_to_json(const motion::ClipSpace& space, nlohmann::json& json) 
   if (space.clips_up != motion::UpAxis::y) json["clips_up"] = name_of(space.clips_up);
 }
 
+/// Reads what space_to_json() added. Throws Error for a value of the wrong type or out of range.
 inline motion::ClipSpace space_from_json(const nlohmann::json& json) {
   motion::ClipSpace out;
   if (json.contains("unit_metres"))

@@ -14,6 +14,7 @@ namespace motiongan::motion {
 /// dropped, and restored as their mean.
 class Normalizer {
  public:
+  /// Dimensions that vary less are left out.
   static constexpr double min_std = 1e-4;
 
   Normalizer() = default;
@@ -52,7 +53,9 @@ class Normalizer {
   const std::vector<double>& std() const { return std_; }    ///< [full dof]
   /// Full dimension of each kept dimension, ascending, [kept dof].
   const std::vector<std::size_t>& kept() const { return kept_; }
+  /// Dimensions of a pose vector.
   std::size_t full_dof() const { return mean_.size(); }
+  /// Dimensions that a model sees: those that vary.
   std::size_t kept_dof() const { return kept_.size(); }
 
   /// Poses [frames, full dof] to normalised [frames, kept dof].

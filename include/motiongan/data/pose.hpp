@@ -72,7 +72,9 @@ class PoseLayout {
   }
 
   const Skeleton& skeleton() const { return skeleton_; }
+  /// Whether the root's position is part of a pose.
   bool root_position() const { return root_position_; }
+  /// The joint that moves the body.
   std::size_t root() const { return root_; }
   RootRotation root_rotation() const { return root_rotation_; }
 

@@ -50,8 +50,8 @@ struct PositionFormat {
   /// Sizes beyond any model's, which a damaged file may claim.
   static constexpr std::size_t most_frames = 65536, most_dof = 65536, most_classes = 65536;
 
-  PositionLayout layout;  ///< holds the skeleton
-  Normalizer normalizer;
+  PositionLayout layout;             ///< holds the skeleton
+  Normalizer normalizer;             ///< mean and standard deviation of each dimension
   double rate = 30;                  ///< frames per second
   std::size_t frames = 30;           ///< T, frames of a prior and of a future
   std::vector<std::string> classes;  ///< names, in the order of class indices

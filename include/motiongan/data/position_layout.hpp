@@ -42,6 +42,7 @@ class PositionLayout {
   }
 
   const Skeleton& skeleton() const { return skeleton_; }
+  /// Whether the root's track over the ground is part of the pose.
   bool root_track() const { return root_track_; }
 
   /// Values per pose: 3 per joint, plus 4 with the root's track.

@@ -54,6 +54,7 @@ inline std::string word_limit_note(std::string_view caption) {
 /// Words in a fixed order; index 0 is `<unk>`, which stands for every unknown word.
 class Vocabulary {
  public:
+  /// The word that stands for all others.
   static constexpr const char* unknown = "<unk>";
 
   Vocabulary() : Vocabulary(std::vector<std::string>{unknown}) {}

@@ -29,6 +29,7 @@ struct DirectedAction {
   std::vector<ConstraintError> errors = {};  ///< one for each constraint
   std::size_t iterations = 0;
 
+  /// Whether every error is within its tolerance.
   bool met() const { return largest_excess(errors) <= 1; }
 };
 

@@ -11,7 +11,7 @@ namespace motiongan {
 
 /// A gap between two motions, at the model's rate and of its joints.
 struct Gap {
-  std::string text;
+  std::string text;  ///< what happens in the gap
   motion::Motion before, after;
   double seconds = 1;  ///< from the last frame of one to the first of the other
   /// Where the second motion is stays as it is. Otherwise it begins where the first one gets to.

@@ -17,7 +17,7 @@ namespace motiongan {
 
 /// The body is in a given pose, or in those of a clip, from `time` on.
 struct PoseConstraint {
-  double time = 0;
+  double time = 0;                       ///< seconds
   motion::Motion pose = {};              ///< one frame or more, of the model's joints, at the model's rate
   std::vector<std::size_t> joints = {};  ///< those that count; empty: all
   /// Also where the body is and where it faces. Otherwise only the pose and its height count.
@@ -28,9 +28,9 @@ struct PoseConstraint {
 /// A joint is at a point, or has a rotation relative to its parent, from `from` to `to`.
 struct JointConstraint {
   std::size_t joint = 0;
-  double from = 0, to = 0;
-  std::optional<motion::Vec3> position = {};
-  std::optional<motion::Quat> rotation = {};
+  double from = 0, to = 0;                    ///< seconds
+  std::optional<motion::Vec3> position = {};  ///< in the world
+  std::optional<motion::Quat> rotation = {};  ///< relative to the parent
   double weight = 1;
   double tolerance = 0;        ///< the largest distance
   double angle_tolerance = 0;  ///< the largest angle, radians
@@ -39,8 +39,8 @@ struct JointConstraint {
 /// A point of a path over the ground.
 struct PathPoint {
   double x = 0, z = 0;
-  std::optional<double> time = {};
-  std::optional<double> yaw = {};  ///< where the body faces, radians about y from +z
+  std::optional<double> time = {};  ///< seconds, when the root should be there; not set: at any time
+  std::optional<double> yaw = {};   ///< where the body faces, radians about y from +z
 };
 
 /// The root goes along straight lines between points. Points without times share the time between those that
@@ -66,6 +66,7 @@ struct ContactConstraint {
   double weight = 1, tolerance = 0;  ///< how far it moves
 };
 
+/// Something that a motion should meet.
 using Constraint =
     std::variant<PoseConstraint, JointConstraint, PathConstraint, LoopConstraint, ContactConstraint>;
 

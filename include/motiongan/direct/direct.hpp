@@ -34,6 +34,7 @@ struct DirectedMotion {
   std::vector<ConstraintError> errors;  ///< one for each constraint
   std::size_t iterations = 0;           ///< in all windows
 
+  /// Whether every error is within its tolerance.
   bool met() const { return largest_excess(errors) <= 1; }
 };
 

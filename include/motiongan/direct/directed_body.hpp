@@ -29,15 +29,16 @@ inline PoseReader read_by_places(motion::PositionLayout layout) {
   };
 }
 
+/// What directing needs to know of the body of a model.
 struct DirectedBody {
   motion::Skeleton skeleton;
-  std::size_t root = 0;
+  std::size_t root = 0;                ///< the joint that moves the body
   double rate = 0;                     ///< frames per second
   bool rotates = true;                 ///< poses have rotations, not only places
   bool root_turns = true;              ///< the root's rotation is by its heading
   std::optional<double> floor = {};    ///< its height, if it is known
   std::optional<double> fastest = {};  ///< the root's largest speed over the ground that can be meant
-  PoseReader read = {};
+  PoseReader read = {};                ///< reads a frame of a motion as the constraints see it
 };
 
 namespace detail {
@@ -81,6 +82,7 @@ inline std::optional<double> fastest(const motion::PositionFormat& format) {
   return detail::speed_of_steps(most(x), most(x + 1), format.rate);
 }
 
+/// The body of a model of texts.
 inline DirectedBody directed_body(const motion::MotionFormat& format) {
   return {.skeleton = format.skeleton(),
           .root = format.layout.root(),
@@ -91,6 +93,7 @@ inline DirectedBody directed_body(const motion::MotionFormat& format) {
           .read = read_by_rotation(format.layout.root())};
 }
 
+/// The body of a model of classes, whose poses are places of joints.
 inline DirectedBody directed_body(const motion::PositionFormat& format) {
   return {.skeleton = format.skeleton(),
           .rate = format.rate,

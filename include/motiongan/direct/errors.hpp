@@ -28,6 +28,7 @@ struct ConstraintError {
     const double far = tolerance > 0 ? worst / tolerance : 0;
     return angle_tolerance > 0 ? std::max(far, angle / angle_tolerance) : far;
   }
+  /// Whether the error is within its tolerance.
   bool met() const { return excess() <= 1; }
 };
 

@@ -16,6 +16,7 @@ struct DirectProgress {
   double excess = 0;  ///< of the worst motion, see ConstraintError
 };
 
+/// Options of direct().
 struct DirectOptions {
   std::size_t frames = 0;  ///< of each motion; 0: the model's N; a model of classes has a schedule instead
   std::size_t starts = 8;  ///< noises that are tried for a motion, side by side
@@ -23,7 +24,7 @@ struct DirectOptions {
   double learning_rate = 0.1;    ///< of Adam
   double stay = 0.0003;          ///< weight of how far the noise turns away from where it was drawn
   bool exact = false;            ///< correct at last what is a little off, see meet_exactly()
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1;        ///< seed of the noises that are tried
   std::size_t first_sample = 0;  ///< motion i of a seed begins with the noise of samples starts * i and more
   /// Scores of normalised motion [N, B, dof] for its texts, [B], such as SavedCritic: of the starts that meet
   /// everything, the one of the highest score is kept. Not set: the one of the smallest error.
@@ -31,8 +32,8 @@ struct DirectOptions {
   /// The same for models of classes, such as SavedActionCritic: scores of a second and the next one,
   /// normalised [2T, B, dof], for the classes [B, Y] (one-hot) of the latter.
   std::function<std::vector<float>(const Var& pairs, const Var& classes)> score_pairs = {};
-  std::function<void(const DirectProgress&)> report = {};
-  std::function<bool()> should_stop = {};  ///< ends early, with the best so far
+  std::function<void(const DirectProgress&)> report = {};  ///< called after each iteration
+  std::function<bool()> should_stop = {};                  ///< ends early, with the best so far
 
   void list_fields(FieldList& list) {
     list.add(starts, {.key = "starts",

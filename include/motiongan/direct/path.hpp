@@ -39,6 +39,7 @@ class TimedPath {
 
   /// Whether points have times: then the pace is given, too.
   bool timed() const { return timed_; }
+  /// The length of the way over the ground.
   double length() const { return way_.back(); }
   const std::vector<PathPoint>& points() const { return points_; }
   double first_time() const { return *points_.front().time; }

@@ -15,6 +15,7 @@ struct WorldPose {
   std::vector<motion::Vec3> body;  ///< [joints]: x and z about the root in its heading, and the height
   double x = 0, z = 0, yaw = 0;    ///< of the root
 
+  /// The place of a joint in the world.
   motion::Vec3 joint(std::size_t j) const {
     motion::Vec3 out = body[j];
     motion::turn_ground(out[0], out[2], yaw);
@@ -22,6 +23,7 @@ struct WorldPose {
   }
 };
 
+/// Frame `frame` of a motion, whose root is joint `root`.
 inline WorldPose world_pose(const motion::Motion& motion, std::size_t frame, std::size_t root) {
   const std::size_t joints = motion.skeleton.size();
   const auto own = [&](const auto& values) { return std::span(values).subspan(frame * joints, joints); };

@@ -24,7 +24,7 @@ class Communicator {
   virtual ~Communicator() = default;
 
   virtual std::size_t rank() const = 0;  ///< 0 .. size() - 1
-  virtual std::size_t size() const = 0;
+  virtual std::size_t size() const = 0;  ///< number of processes
 
   /// Replaces the values by their sums over all ranks, equal on all ranks, added in any order.
   virtual void all_reduce(std::span<float> values) = 0;

@@ -24,7 +24,9 @@ struct Parallel {
 
   std::size_t rank() const { return ranks ? ranks->rank() : 0; }
   std::size_t size() const { return ranks ? ranks->size() : 1; }
+  /// Whether this process writes the files.
   bool is_first() const { return rank() == 0; }
+  /// The number of parts of a batch.
   std::size_t parts() const { return shards > 0 ? shards : size(); }
 };
 
@@ -45,7 +47,7 @@ inline void check_parallel(const Parallel& how, std::size_t batch) {
 /// The loss of a part of a batch: a mean over its samples. What is told beside it, each [1], is averaged over
 /// the parts.
 struct PartLoss {
-  Var loss;
+  Var loss;  ///< to differentiate
   std::vector<Var> told = {};
 };
 

@@ -128,7 +128,9 @@ class ActionEvaluation {
   const motion::PositionFormat& format() const { return data_.format; }
   const EvaluationOptions& options() const { return options_; }
   const EvaluationWindows& windows() const { return windows_; }
+  /// The priors of all windows, normalised.
   const std::vector<std::vector<float>>& priors() const { return priors_; }
+  /// The class of each window.
   const std::vector<std::size_t>& labels() const { return labels_; }
 
   /// The measures of the real motion; its errors are 0.

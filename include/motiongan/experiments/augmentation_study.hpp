@@ -23,11 +23,11 @@ struct AugmentationStudyOptions {
   std::uint64_t first_seed = 1;  ///< seed of weights and batches; counts up
   std::size_t iterations = 500;  ///< steps of each classifier
   double max_minutes = 0;        ///< stop each classifier after this time; 0: no limit
-  std::size_t batch = 64;
-  std::size_t hidden = 256;  ///< width of the classifiers
-  bool attention = true;     ///< self-attention in the classifiers
-  bool balanced = true;      ///< draw classes with equal probability
-  AdamOptions adam{};
+  std::size_t batch = 64;        ///< windows in a step of a classifier
+  std::size_t hidden = 256;      ///< width of the classifiers
+  bool attention = true;         ///< self-attention in the classifiers
+  bool balanced = true;          ///< draw classes with equal probability
+  AdamOptions adam{};            ///< of the classifiers
   std::function<bool()> should_stop = {};  ///< called after every step; true stops the study
   std::function<void(std::size_t step, double loss)> report =
       {};  ///< called every 20 steps; steps are counted over all classifiers
@@ -42,7 +42,7 @@ struct StudyAccuracy {
 /// The result for one seed.
 struct AugmentationStudyRow {
   std::uint64_t seed = 0;
-  StudyAccuracy real, augmented;
+  StudyAccuracy real, augmented;  ///< of classifiers trained without and with the synthetic clips
 };
 
 /// Converts synthetic clips of `model` to the format of `data`: its frame rate, normalisation and class

@@ -24,10 +24,12 @@ struct CompletionProtocol {
   static constexpr std::size_t prefix = 50;  ///< frames given
   static constexpr std::size_t future = 25;  ///< frames to predict
   static constexpr std::size_t tests = 8;    ///< tests of each action
+  /// The seed of the protocol's windows.
   static constexpr std::uint32_t seed = 1234567890;
   /// The predicted frames (from 0) at which errors are measured, and their times in the literature:
   /// milliseconds at 25 Hz.
   static constexpr std::array<std::size_t, 6> measured{1, 3, 7, 9, 13, 24};
+  /// The columns of the papers' tables.
   static constexpr std::array<int, 6> milliseconds{80, 160, 320, 400, 560, 1000};
 };
 
@@ -83,10 +85,12 @@ class CompletionData {
   motion::ExpmapLayout layout() const { return layout_; }
   const std::vector<std::string>& actions() const { return actions_; }  ///< the actions that are tested
   const std::vector<std::string>& classes() const { return classes_; }  ///< the actions of the training clips
+  /// Fitted to the training clips.
   const motion::Normalizer& normalizer() const { return normalizer_; }
   std::size_t columns() const { return columns_; }              ///< numbers per line of the files
   std::size_t dof() const { return normalizer_.kept_dof(); }    ///< channels of a model's pose
   double rate() const { return motion::rate_of(layout_) / 2; }  ///< frame rate of the models, Hz
+  /// The training clips.
   const std::vector<CompletionClip>& train() const { return train_; }
   const std::vector<CompletionTest>& tests() const { return tests_; }  ///< eight of each action, in order
 

@@ -17,7 +17,7 @@ struct DvganVariant {
   GeneratorKind generator = GeneratorKind::cnn;
   CriticKind critic = CriticKind::cnn;
   Validation validation = Validation::dense;  ///< of the CNN critic; ignored for the RNN critic
-  bool shift = false, cut = false;
+  bool shift = false, cut = false;            ///< input shift and final cut
 
   bool operator==(const DvganVariant&) const = default;
 
@@ -110,7 +110,7 @@ struct DvganRun {
 /// All training runs of a variant.
 struct DvganAblationRow {
   DvganVariant variant;
-  std::vector<DvganRun> runs;
+  std::vector<DvganRun> runs;  ///< one for each seed
 
   /// Mean and standard deviation over the runs of measure(evaluation).
   template <class Measure>
@@ -124,7 +124,7 @@ struct DvganAblationRow {
 /// A column of the study's table: its name, and a function of a motion set's measures and its FID.
 struct AblationColumn {
   std::string_view name;
-  int decimals = 1;
+  int decimals = 1;  ///< digits after the point
   double (*measure)(const MotionSetMeasures& set, double distance);
 };
 /// All columns, in the order of the table.

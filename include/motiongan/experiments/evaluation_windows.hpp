@@ -18,7 +18,7 @@ namespace motiongan {
 struct EvaluationWindow {
   std::size_t clip = 0;   ///< index into data.test
   std::size_t start = 0;  ///< the prior's first frame
-  std::size_t label = 0;
+  std::size_t label = 0;  ///< index of its class
 };
 
 /// The windows of an evaluation, and what they were chosen from.

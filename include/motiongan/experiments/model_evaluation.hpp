@@ -21,8 +21,8 @@ struct ModelEvaluationOptions {
   std::size_t descriptions = 250;  ///< K: the most frequent descriptions of the test clips, at most all
   std::size_t samples = 16;        ///< motions of each description, generated and real; at least 2
   std::uint64_t seed = 1;          ///< seed of the generated motions and of random pairs
-  std::size_t diversity_pairs = 200, multimodality_pairs = 20;
-  FootSkateOptions feet{};
+  std::size_t diversity_pairs = 200, multimodality_pairs = 20;  ///< pairs of motions that are compared
+  FootSkateOptions feet{};                                      ///< how foot skating is measured
   double drift_seconds = 30;      ///< length of the motions that drift is measured on; RNN generators only
   std::size_t drift_motions = 8;  ///< their number; they cycle through the most frequent descriptions
   /// Makes the motions of a description in place of the model. Unset: Dvgan::generate.

@@ -12,6 +12,7 @@ namespace motiongan {
 /// while out of range.
 class NumpyRandom {
  public:
+  /// As numpy.random.RandomState(seed).
   explicit NumpyRandom(std::uint32_t seed) : engine_(seed) {}
 
   /// An integer in [low, high). A range of one value draws nothing from the generator; a range of more than

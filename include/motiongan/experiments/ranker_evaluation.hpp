@@ -48,8 +48,8 @@ struct RankerEvaluation {
   RealWindows real;
   std::vector<float> features;  ///< unit-length embeddings of the windows, [n, k]
   std::vector<float> scores;    ///< [n, K]
-  Retrieval retrieval;
-  double inception_score = 0;  ///< of the real windows, nats
+  Retrieval retrieval;          ///< R@k among the K descriptions
+  double inception_score = 0;   ///< of the real windows, nats
 };
 
 /// Measures how well the ranker retrieves the descriptions of the test clips. Throws Error as real_windows(),

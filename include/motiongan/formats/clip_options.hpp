@@ -15,7 +15,7 @@ struct ClipOptions {
   double unit_metres = 0;      ///< metres per unit of the files; 0: unknown
   double scale = 1;            ///< lengths are multiplied by this
   double fps = 0;              ///< frames per second of the files; 0: what each file says
-  FirstFrame first_frame = FirstFrame::automatic;
+  FirstFrame first_frame = FirstFrame::automatic;  ///< whether a pose before the motion is dropped
   std::filesystem::path bones{};  ///< bone list of CSV and NPY, ASF of AMC; empty: found next to each
   bool skip_bad = false;          ///< go on without files that cannot be read
   bool normalise_height = false;  ///< scale the clips of a data set to their median body height

@@ -84,6 +84,7 @@ enum class ExpmapLayout {
   cmu    ///< train/walking/walking_1.txt ..., test/walking/walking_1.txt. 120 frames/s
 };
 
+/// "h36m" or "cmu".
 inline const char* name_of(ExpmapLayout layout) { return layout == ExpmapLayout::h36m ? "h36m" : "cmu"; }
 
 /// Frames per second of the layout's files.
@@ -100,7 +101,7 @@ struct ExpmapClip {
 /// The training files, and the test files of the tested actions.
 struct ExpmapCollection {
   ExpmapLayout layout = ExpmapLayout::h36m;
-  std::size_t columns = 0;
+  std::size_t columns = 0;           ///< of every file
   std::vector<std::string> actions;  ///< tested, in the order given, else by name
   std::vector<std::string> classes;  ///< all actions trained on or available for testing, by name
   std::vector<ExpmapClip> train;     ///< by action, then by id

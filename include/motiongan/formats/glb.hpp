@@ -29,6 +29,7 @@ struct NamedMotion {
 /// subjects have 1.1.
 inline constexpr double typical_leg = 1.05;
 
+/// Options of GLB files that are written.
 struct GlbOptions {
   double unit_metres = 0;  ///< metres per unit of the motions; 0: unknown, the legs become typical_leg
   bool body = true;        ///< a body of capsules, skinned to the joints, so that viewers show something

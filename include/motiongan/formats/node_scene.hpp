@@ -18,27 +18,30 @@ namespace motiongan::motion {
 /// A node: scaled first, then turned, then moved, relative to its parent.
 struct SceneNode {
   std::string name;
-  int parent = -1;  ///< index of a node, in any order; -1: none
-  Vec3 translation{};
-  Quat rotation{};
-  Vec3 scale{1, 1, 1};
+  int parent = -1;        ///< index of a node, in any order; -1: none
+  Vec3 translation{};     ///< where it is
+  Quat rotation{};        ///< how it is turned
+  Vec3 scale{1, 1, 1};    ///< factors along its axes
   bool is_joint = false;  ///< of a skin
   bool is_thing = false;  ///< a mesh, camera or light
 };
 
+/// What of a node a track changes.
 enum class TrackKind { translation, rotation };
+/// How values between two keys are found, as in glTF.
 enum class Between { linear, step, cubic };
 
 /// How a property of a node changes. `values` are [keys, 3] or, for rotations, [keys, 4] as x, y, z, w; cubic
 /// ones are [keys, 3, width]: tangent before, value, tangent after.
 struct NodeTrack {
-  std::size_t node = 0;
+  std::size_t node = 0;  ///< index into NodeScene::nodes
   TrackKind kind = TrackKind::rotation;
   Between between = Between::linear;
   std::vector<double> times;  ///< [keys], seconds, increasing
   std::vector<double> values;
 };
 
+/// An animation of a scene: tracks that play together.
 struct SceneAnimation {
   std::string name;
   double rate = 0;  ///< frames per second, if the file says so; 0: told by the times
@@ -49,7 +52,7 @@ struct SceneAnimation {
 struct NodeScene {
   std::vector<SceneNode> nodes;
   std::vector<SceneAnimation> animations;
-  double unit_metres = 1;
+  double unit_metres = 1;          ///< metres per unit of length
   std::vector<std::string> notes;  ///< what was ignored, one sentence each
 };
 

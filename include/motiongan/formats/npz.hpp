@@ -16,7 +16,7 @@ namespace motiongan::motion {
 /// An array of an .npy file, in C order.
 struct NpyArray {
   std::vector<std::size_t> shape;  ///< empty for a scalar
-  std::vector<double> values;
+  std::vector<double> values;      ///< row-major, whatever the order in the file
 };
 
 namespace npy_detail {

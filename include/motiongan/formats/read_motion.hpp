@@ -227,13 +227,15 @@ inline LoadedMotion read_motion(const std::filesystem::path& file, const ClipOpt
   return out;
 }
 
-/// What read_motion tells of a file, quickly: of a long BVH file, only a sample of frames is converted. The
-/// skeleton, its axes and sizes, dropped frames and notes are those of read_motion but for the sampling;
-/// `frames` counts all frames of the motion.
+/// What inspect_motion() tells of a file.
 struct InspectedMotion {
-  LoadedMotion loaded;
-  std::size_t frames = 0;
+  LoadedMotion loaded;     ///< of a long BVH file, a sample of the frames
+  std::size_t frames = 0;  ///< all frames of the motion
 };
+
+/// What read_motion() tells of a file, quickly: of a long BVH file, only a sample of frames is converted. The
+/// skeleton, its axes and sizes, dropped frames and notes are those of read_motion() but for the sampling.
+/// Throws Error as that does.
 inline InspectedMotion inspect_motion(const std::filesystem::path& file, const ClipOptions& options = {}) {
   const std::string extension = extension_of(file);
   Clip clip;

@@ -28,8 +28,10 @@ inline std::string why_missing(const std::filesystem::path& path) {
 
 /// Bytes that no file of motion has, and no list of captions, labels or joints: larger ones are refused
 /// before they are read.
-inline constexpr std::uint64_t largest_text_file = std::uint64_t{4} << 30,
-                               largest_list_file = std::uint64_t{256} << 20;
+/// \{
+inline constexpr std::uint64_t largest_text_file = std::uint64_t{4} << 30;
+inline constexpr std::uint64_t largest_list_file = std::uint64_t{256} << 20;
+/// \}
 
 /// Throws Error unless `path` leads to a regular file: opening a pipe or reading a device might never end.
 /// `kind` is what messages call it, such as "BVH file".

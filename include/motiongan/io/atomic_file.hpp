@@ -41,8 +41,11 @@ class AtomicFile {
     remove();
   }
 
+  /// Appends. Throws Error if the disk is full or fails.
+  /// \{
   void write(const void* bytes, std::size_t size) { check(os::write_all(file_, bytes, size), "write"); }
   void write(std::string_view text) { write(text.data(), text.size()); }
+  /// \}
 
   /// Whether commit() waits until the file is on disk: for files whose loss matters after a power cut.
   enum class Sync { no, yes };

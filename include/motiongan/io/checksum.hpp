@@ -13,6 +13,7 @@ namespace motiongan::io {
 /// it.
 class Checksum {
  public:
+  /// Takes in more bytes.
   void add(const void* bytes, std::size_t size) {
     if (size == 0) return;  // a null pointer would reset the sum
     value_ = ::crc32_z(value_, static_cast<const Bytef*>(bytes), size);
@@ -23,6 +24,7 @@ class Checksum {
     add("", 1);
   }
 
+  /// The CRC-32 of all bytes so far.
   std::uint32_t value() const { return static_cast<std::uint32_t>(value_); }
 
   /// Eight hexadecimal digits.

@@ -110,6 +110,7 @@ inline nlohmann::json fields_to_json(const FieldList& fields) {
     if (field.info.saved) out[field.info.key] = detail::field_to_json(field);
   return out;
 }
+/// fields_to_json() as text.
 inline std::string fields_to_text(const FieldList& fields) { return fields_to_json(fields).dump(); }
 
 /// Parses JSON; the result is discarded() for a text that is none, or that nests too deeply.

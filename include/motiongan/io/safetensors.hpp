@@ -127,8 +127,8 @@ struct SafeTensor {
 /// The contents of one safetensors file.
 class SafeTensors {
  public:
-  std::map<std::string, SafeTensor> tensors;
-  std::map<std::string, std::string> metadata;
+  std::map<std::string, SafeTensor> tensors;    ///< by name
+  std::map<std::string, std::string> metadata;  ///< the header's __metadata__
 
   /// Reads a file. Throws Error, naming the file and the problem, unless it conforms to the format in every
   /// respect and, if write() made it, its checksum is right. Sizes claimed by the header are checked before

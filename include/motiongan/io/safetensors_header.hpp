@@ -43,12 +43,14 @@ inline std::size_t tensor_bytes(const std::string& dtype, const std::vector<std:
   return bytes;
 }
 
+/// The header of a safetensors file.
 struct SafeTensorsHeader {
   /// Far beyond any model: a header with more would cost much time and memory for its few bytes.
   static constexpr std::size_t most_dimensions = 16, most_entries = 100'000;
 
+  /// A tensor of the file.
   struct Entry {
-    std::string dtype;
+    std::string dtype;  ///< as in the file, such as F32
     std::vector<std::size_t> shape;
     std::vector<std::size_t> offsets;  ///< begin and end, in bytes after the header
   };

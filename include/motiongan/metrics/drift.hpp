@@ -35,6 +35,7 @@ struct DriftSummary {
 /// Accumulates statistics of poses as they are generated. Memory grows by one row per second.
 class DriftMeter {
  public:
+  /// Measures motion of this format.
   explicit DriftMeter(const motion::MotionFormat& format)
       : rate_(format.rate), dof_(format.dof()), sum_(dof_), squares_(dof_), before_(dof_) {
     format.check();

@@ -16,6 +16,7 @@
 
 namespace motiongan {
 
+/// Options of foot_skate().
 struct FootSkateOptions {
   std::vector<std::string> feet = {};  ///< joint names; empty: found by find_feet()
   double unit_metres = 0;              ///< the file's unit in metres; 0: unknown, a leg counts as 1 m
@@ -38,6 +39,7 @@ struct FootSkate {
   double contact_share() const {
     return steps > 0 ? static_cast<double>(contact) / static_cast<double>(steps) : 0;
   }
+  /// Adds the counts of other motions.
   FootSkate& operator+=(const FootSkate& other) {
     steps += other.steps, sliding += other.sliding, contact += other.contact;
     return *this;

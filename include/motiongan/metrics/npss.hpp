@@ -56,6 +56,7 @@ class Npss {
     ++sequences_;
   }
 
+  /// The number of pairs added so far.
   std::size_t sequences() const { return sequences_; }
 
   /// The NPSS of all pairs; 0 if the true sequences have no power. Throws Error if no pair was added.

@@ -28,6 +28,7 @@ inline Recall random_recall(std::size_t descriptions) {
 
 /// R@k over all samples and per description.
 struct Retrieval {
+  /// The samples of one description.
   struct Part {
     std::size_t description = 0;  ///< index of the description
     std::size_t samples = 0;

@@ -26,8 +26,8 @@ constexpr NameTable<ActionGenerator, 2> enum_names(ActionGenerator) {
 
 /// Options of an ActionGan.
 struct ActionGanOptions {
-  ActionGenerator generator = ActionGenerator::attention;
-  std::size_t hidden = 256;   ///< C, channels of the hidden layers
+  ActionGenerator generator = ActionGenerator::attention;  ///< which network generates
+  std::size_t hidden = 256;                                ///< C, channels of the hidden layers
   std::size_t noise_dim = 0;  ///< noise channels next to the class; the paper: 0; the LSTM must have 0
   bool attention = true;      ///< self-attention in generator, critic and classifier
   bool continues = false;     ///< generate what is added to the prior's last pose, which fades; the paper: no
@@ -76,6 +76,7 @@ class ActionGan {
   const Context& context() const { return context_; }
   const motion::PositionFormat& format() const { return format_; }
   const ActionGanOptions& options() const { return options_; }
+  /// Whether the generator is the LSTM baseline.
   bool is_baseline() const { return options_.generator == ActionGenerator::lstm; }
 
   /// The attention generator. Throws Error if the model is the LSTM baseline.

@@ -22,9 +22,9 @@ constexpr NameTable<GeneratorKind, 2> enum_names(GeneratorKind) {
 
 /// Options of a Dvgan.
 struct DvganOptions {
-  GeneratorKind generator = GeneratorKind::cnn;
-  std::size_t hidden = 256;            ///< k, hidden width
-  std::size_t taps = 3;                ///< kernel size of the CNN's convolutions: 3 or 5
+  GeneratorKind generator = GeneratorKind::cnn;  ///< which network generates
+  std::size_t hidden = 256;                      ///< k, hidden width
+  std::size_t taps = 3;                          ///< kernel size of the CNN's convolutions: 3 or 5
   std::optional<bool> final_cut = {};  ///< make 2N frames, keep N; not set: on for the CNN, off for the RNN
   std::uint64_t seed = 1;              ///< seed of the initial weights
 
@@ -65,6 +65,7 @@ class Dvgan {
   const motion::MotionFormat& format() const { return format_; }
   const DvganOptions& options() const { return options_; }
 
+  /// Whether the generator is an RNN: frame by frame, any length, completion.
   bool is_recurrent() const { return options_.generator == GeneratorKind::rnn; }
   /// The CNN generator. Throws Error if the model has an RNN generator.
   const CnnGenerator& cnn() const {

@@ -34,8 +34,8 @@ inline std::size_t usual_hidden(Predictor predictor) {
 
 /// Options of a PredictionModel.
 struct PredictionOptions {
-  Predictor predictor = Predictor::seq2seq;
-  std::size_t hidden = 0;  ///< hidden width; 0: usual_hidden()
+  Predictor predictor = Predictor::seq2seq;  ///< which network predicts
+  std::size_t hidden = 0;                    ///< hidden width; 0: usual_hidden()
   bool labels = true;      ///< whether seq2seq is given the action; lstm always is, the other two never
   std::uint64_t seed = 1;  ///< seed of the initial weights
 

@@ -21,10 +21,10 @@ constexpr NameTable<RankerKind, 2> enum_names(RankerKind) {
 
 /// Options of a Ranker.
 struct RankerOptions {
-  RankerKind kind = RankerKind::rnn;
-  std::size_t hidden = 1024;  ///< k, width of the network and of the embedding
-  std::size_t taps = 3;       ///< kernel size of the CNN's convolutions: 3 or 5
-  std::uint64_t seed = 1;     ///< seed of the initial weights
+  RankerKind kind = RankerKind::rnn;  ///< which network ranks
+  std::size_t hidden = 1024;          ///< k, width of the network and of the embedding
+  std::size_t taps = 3;               ///< kernel size of the CNN's convolutions: 3 or 5
+  std::uint64_t seed = 1;             ///< seed of the initial weights
 
   void list_fields(FieldList& list) {
     list.add(kind, {.key = "kind",

@@ -15,6 +15,7 @@
 
 namespace motiongan::motion {
 
+/// The side of the body that a joint is on.
 enum class Side : std::uint8_t { centre, left, right };
 
 /// A side and the part of the name that indicates it, name.substr(at, count); empty if `side` is centre.

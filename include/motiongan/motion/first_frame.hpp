@@ -169,6 +169,7 @@ inline std::size_t t_pose_frames(const Motion& motion, std::size_t hop) {
   return count;
 }
 
+/// t_pose_frames() with steps at as many frames as a clip of this length needs.
 inline std::size_t t_pose_frames(const Motion& motion) {
   return t_pose_frames(motion, first_frame_detail::sample_hop(motion.frames));
 }

@@ -27,6 +27,7 @@ inline JointMap find_joint_map(const Skeleton& from, const Skeleton& to) {
           parts(to, "the skeleton that the motion goes to")};
 }
 
+/// The first line of a file that holds a map.
 inline constexpr const char* joint_map_header = "part\tto\tfrom";
 
 /// The map as lines of part, joint of the skeleton that the motion goes to, and joint of the one that it

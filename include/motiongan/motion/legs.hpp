@@ -54,6 +54,7 @@ struct WorldJoint {
   Quat rotation{};
 };
 
+/// Position and rotation of `joint` in the world, in frame `frame`.
 inline WorldJoint world_joint(const Motion& motion, std::size_t frame, std::size_t joint) {
   WorldJoint out{motion.position(frame, joint), motion.rotation(frame, joint)};
   for (int p = motion.skeleton.joints[joint].parent; p >= 0;

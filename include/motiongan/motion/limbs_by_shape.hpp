@@ -16,11 +16,13 @@ namespace motiongan::motion {
 
 /// The limb parts of a side, in the order of BodyPart from left_collar or right_collar on.
 enum class Limb : std::uint8_t { collar, arm, forearm, hand, thigh, shin, foot, toe };
+/// The number of limb parts of a side.
 inline constexpr std::size_t limb_count = 8;
 
 /// The joints of one side's limbs, [limb_count].
 using LimbJoints = std::array<std::optional<std::size_t>, limb_count>;
 
+/// The limbs and the head of a body, as far as they were found.
 struct ShapedLimbs {
   LimbJoints left, right;
   std::optional<std::size_t> head;

@@ -108,7 +108,7 @@ inline Clip to_clip(const Motion& motion, std::string id) {
 /// Where a resampled frame lies: a fraction `t` of the way from source frame `before` to `after`.
 struct BetweenFrames {
   std::size_t before = 0, after = 0;  ///< equal if a source frame is used unchanged
-  double t = 0;
+  double t = 0;                       ///< 0 at `before`, 1 at `after`
 };
 
 /// Number of frames that resample() makes from `frames` frames. Throws Error if a rate is not positive, or

@@ -136,6 +136,7 @@ class Retargeter {
   /// `to`.
   Retargeter(const Motion& from, const Motion& to)
       : Retargeter(from, to, find_joint_map(from.skeleton, to.skeleton)) {}
+  /// Between the joints that `map` pairs.
   Retargeter(const Motion& from, const Motion& to, const JointMap& map)
       : Retargeter(RetargetBody{from.skeleton, reference_pose(from.skeleton, map.from, from)},
                    RetargetBody{to.skeleton, reference_pose(to.skeleton, map.to, to)}, map) {}

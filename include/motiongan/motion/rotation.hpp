@@ -16,13 +16,18 @@ namespace motiongan::motion {
 /// Rotation matrix, row-major: element (row, column) is m[3 * row + column].
 using Mat3 = std::array<double, 9>;
 
+/// Half a turn, in radians.
 inline constexpr double pi = std::numbers::pi;
 
+/// Degrees to radians.
 inline constexpr double radians(double degrees) { return degrees * (pi / 180); }
+/// Radians to degrees.
 inline constexpr double degrees(double radians) { return radians * (180 / pi); }
 
 // ---- vectors
 
+/// Arithmetic of vectors.
+/// \{
 inline Vec3 add(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 inline Vec3 subtract(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 inline Vec3 scale(const Vec3& a, double s) { return {a[0] * s, a[1] * s, a[2] * s}; }
@@ -31,9 +36,11 @@ inline Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 inline double length(const Vec3& a) { return std::hypot(a[0], a[1], a[2]); }
+/// \}
 
 // ---- quaternions
 
+/// The scalar product of two quaternions: 1 or -1 for unit quaternions of the same rotation.
 inline double dot(const Quat& a, const Quat& b) { return a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z; }
 
 /// The rotation b followed by a, in the order of matrix products: R(multiply(a, b)) = R(a) R(b).
@@ -53,6 +60,7 @@ inline Quat normalize(const Quat& q) {
   return {q.w / n, q.x / n, q.y / n, q.z / n};
 }
 
+/// The vector turned by a unit quaternion.
 inline Vec3 rotate(const Quat& q, const Vec3& v) {
   const Vec3 u{q.x, q.y, q.z};
   const Vec3 t = scale(cross(u, v), 2);
@@ -80,6 +88,7 @@ inline Quat slerp(const Quat& a, const Quat& b, double t) {
 
 // ---- matrices
 
+/// The matrix product a b.
 inline Mat3 multiply(const Mat3& a, const Mat3& b) {
   Mat3 c{};
   for (std::size_t i = 0; i < 3; ++i)
@@ -88,8 +97,10 @@ inline Mat3 multiply(const Mat3& a, const Mat3& b) {
   return c;
 }
 
+/// The transpose, which is the inverse of a rotation.
 inline Mat3 transpose(const Mat3& m) { return {m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]}; }
 
+/// The matrix of a unit quaternion.
 inline Mat3 matrix_from_quat(const Quat& q) {
   const double xx = q.x * q.x, yy = q.y * q.y, zz = q.z * q.z, xy = q.x * q.y, xz = q.x * q.z, yz = q.y * q.z;
   const double wx = q.w * q.x, wy = q.w * q.y, wz = q.w * q.z;
@@ -116,6 +127,7 @@ inline Quat quat_from_matrix(const Mat3& m) {
 
 // ---- exponential maps: axis times angle
 
+/// The rotation about r by |r|.
 inline Quat quat_from_expmap(const Vec3& r) {
   const double angle = length(r);
   const double s = angle > 0 ? std::sin(angle / 2) / angle : 0.5;
@@ -144,7 +156,9 @@ inline Vec3 unwrap_expmap(const Vec3& r, const Vec3& previous) {
   return turns == 0 ? r : scale(r, 1 + 2 * pi * turns / angle);
 }
 
+/// The matrix of the rotation about r by |r|.
 inline Mat3 matrix_from_expmap(const Vec3& r) { return matrix_from_quat(quat_from_expmap(r)); }
+/// The shortest exponential map of a rotation, of length at most pi.
 inline Vec3 expmap_from_matrix(const Mat3& m) { return expmap_from_quat(quat_from_matrix(m)); }
 
 // ---- Euler angles
@@ -153,7 +167,7 @@ inline Vec3 expmap_from_matrix(const Mat3& m) { return expmap_from_quat(quat_fro
 /// axes, in any order; the first and third may be equal.
 struct EulerOrder {
   std::array<std::size_t, 3> axes{};  ///< 0, 1 or 2 for x, y or z
-  std::size_t count = 0;
+  std::size_t count = 0;              ///< of axes
 
   EulerOrder() = default;
 
@@ -167,6 +181,7 @@ struct EulerOrder {
   }
 };
 
+/// The rotation by `angle` about x, y or z: axis 0, 1 or 2.
 inline Quat axis_rotation(std::size_t axis, double angle) {
   Vec3 v{};
   v[axis] = std::sin(angle / 2);
@@ -253,15 +268,19 @@ inline Vec3 euler_from_quat_near(const EulerOrder& order, const Quat& q, const V
   return unwrap_euler(order, euler_from_quat(order, q, previous[2]), previous);
 }
 
+/// The rotation of Euler angles in this order.
 inline Mat3 matrix_from_euler(const EulerOrder& order, const Vec3& angles) {
   return matrix_from_quat(quat_from_euler(order, angles));
 }
+/// Euler angles of a rotation, see euler_from_quat().
 inline Vec3 euler_from_matrix(const EulerOrder& order, const Mat3& m) {
   return euler_from_quat(order, quat_from_matrix(m));
 }
+/// The exponential map of Euler angles, of length at most pi.
 inline Vec3 expmap_from_euler(const EulerOrder& order, const Vec3& angles) {
   return expmap_from_quat(quat_from_euler(order, angles));
 }
+/// Euler angles of an exponential map, see euler_from_quat().
 inline Vec3 euler_from_expmap(const EulerOrder& order, const Vec3& r) {
   return euler_from_quat(order, quat_from_expmap(r));
 }

@@ -9,6 +9,7 @@
 
 namespace motiongan::motion {
 
+/// x, y, z.
 using Vec3 = std::array<double, 3>;
 
 /// Unit quaternion, scalar first.
@@ -20,11 +21,13 @@ struct Quat {
 /// One value of a BVH frame. Rotations are in degrees, positions in the file's length unit.
 enum class Channel { x_position, y_position, z_position, x_rotation, y_rotation, z_rotation };
 
+/// Whether the channel is an angle, not a position.
 inline bool is_rotation(Channel c) { return c >= Channel::x_rotation; }
 
 /// 0, 1 or 2 for x, y or z.
 inline std::size_t axis(Channel c) { return static_cast<std::size_t>(c) % 3; }
 
+/// A joint of a skeleton.
 struct Joint {
   std::string name;
   int parent = -1;  ///< index into Skeleton::joints, always smaller than the joint's own; -1 for the root
@@ -71,6 +74,7 @@ struct Clip {
   std::vector<double> channels;    ///< [frames, skeleton.channel_count()], degrees and length units
   std::vector<std::string> notes;  ///< what the reader corrected or ignored, one sentence each
 
+  /// Frames per second.
   double rate() const { return 1.0 / frame_time; }
 };
 
@@ -84,10 +88,13 @@ struct Motion {
   std::vector<Vec3> positions;  ///< [frames, joints], each joint's origin in its parent's frame (its offset,
                                 ///< unless it has position channels)
 
+  /// The rotation of a joint relative to its parent.
+  /// \{
   const Quat& rotation(std::size_t frame, std::size_t joint) const {
     return rotations[frame * skeleton.size() + joint];
   }
   Quat& rotation(std::size_t frame, std::size_t joint) { return rotations[frame * skeleton.size() + joint]; }
+  /// \}
   const Vec3& position(std::size_t frame, std::size_t joint) const {
     return positions[frame * skeleton.size() + joint];
   }

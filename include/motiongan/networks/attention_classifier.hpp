@@ -4,6 +4,7 @@
 
 namespace motiongan {
 
+/// Options of an AttentionClassifier.
 struct AttentionClassifierOptions {
   std::size_t dof = 0;       ///< values per pose
   std::size_t classes = 0;   ///< Y, the number of classes
@@ -40,6 +41,7 @@ class AttentionClassifier {
     return attention_->map(before_attention(motion));
   }
 
+  /// The attention layer; empty in the ablation without it.
   const std::optional<SelfAttention>& attention() const { return attention_; }
 
   void list_parameters(ParameterList& list) {

@@ -4,6 +4,7 @@
 
 namespace motiongan {
 
+/// Options of an AttentionCritic.
 struct AttentionCriticOptions {
   std::size_t dof = 0;       ///< values per pose
   std::size_t hidden = 256;  ///< C, hidden width
@@ -43,6 +44,7 @@ class AttentionCritic {
     return attention_->map(before_attention(motion, classes));
   }
 
+  /// The attention layer; empty in the ablation without it.
   const std::optional<SelfAttention>& attention() const { return attention_; }
 
   void list_parameters(ParameterList& list) {

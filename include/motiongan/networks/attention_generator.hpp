@@ -5,6 +5,7 @@
 
 namespace motiongan {
 
+/// Options of an AttentionGenerator.
 struct AttentionGeneratorOptions {
   std::size_t dof = 0;        ///< values per pose
   std::size_t classes = 0;    ///< Y, the number of classes
@@ -49,6 +50,7 @@ class AttentionGenerator {
   Var with_exact_bones(const Var& prior, const Var& made) const {
     return bones_ ? bones_->with_lengths_of(last_pose(prior), made) : made;
   }
+  /// What keeps the lengths of bones; empty without exact bones.
   const std::optional<Bones>& bones() const { return bones_; }
 
   /// What the output is added to if it continues, [T, B, dof]: the prior's last frame times `fading`. The
@@ -83,6 +85,7 @@ class AttentionGenerator {
     round_to_bf16(named_parameters(*this));
     in_16_bits_ = true;
   }
+  /// Whether weights are read in 16 bits, see bfloat16().
   bool in_16_bits() const { return in_16_bits_; }
 
   void list_parameters(ParameterList& list) {

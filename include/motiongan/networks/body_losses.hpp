@@ -14,6 +14,7 @@ namespace motiongan {
 struct BodyLossOptions {
   double smooth = 0, contact = 0;
 
+  /// Whether there is a loss at all.
   bool any() const { return smooth > 0 || contact > 0; }
 
   void list_fields(FieldList& list) {

@@ -21,14 +21,15 @@ constexpr NameTable<LevelWeights, 2> enum_names(LevelWeights) {
   return {{{LevelWeights::exp, "exp"}, {LevelWeights::softmax, "softmax"}}};
 }
 
+/// Options of a CnnCritic.
 struct CnnCriticOptions {
-  std::size_t vocabulary = 0;  ///< number of words
-  std::size_t dof = 0;         ///< M, values per pose
-  std::size_t frames = 32;     ///< N, frames per window; a power of two
-  std::size_t hidden = 256;    ///< k, hidden width
-  std::size_t taps = 3;        ///< kernel size of the convolutions: 3 or 5
-  Validation validation = Validation::dense;
-  LevelWeights level_weights = LevelWeights::exp;
+  std::size_t vocabulary = 0;                      ///< number of words
+  std::size_t dof = 0;                             ///< M, values per pose
+  std::size_t frames = 32;                         ///< N, frames per window; a power of two
+  std::size_t hidden = 256;                        ///< k, hidden width
+  std::size_t taps = 3;                            ///< kernel size of the convolutions: 3 or 5
+  Validation validation = Validation::dense;       ///< the time scales that are scored
+  LevelWeights level_weights = LevelWeights::exp;  ///< how the scores of levels are weighted
   bool composes = true;  ///< apply `encode` through the layers that read it, see CnnTrunk; equal to rounding
 };
 

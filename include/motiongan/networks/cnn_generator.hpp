@@ -7,6 +7,7 @@
 
 namespace motiongan {
 
+/// Options of a CnnGenerator.
 struct CnnGeneratorOptions {
   std::size_t vocabulary = 0;  ///< number of words
   std::size_t dof = 0;         ///< M, values per pose

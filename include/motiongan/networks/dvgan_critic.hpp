@@ -25,6 +25,7 @@ constexpr NameTable<CriticSees, 3> enum_names(CriticSees) {
            {CriticSees::both, "both"}}};
 }
 
+/// Options of a DvganCritic: which network it is, and what it sees of the motion.
 struct DvganCriticOptions {
   CriticKind critic = CriticKind::cnn;
   CriticSees sees = CriticSees::rotations;

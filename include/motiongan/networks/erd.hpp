@@ -7,6 +7,7 @@
 
 namespace motiongan {
 
+/// Options of an Erd.
 struct ErdOptions {
   std::size_t dof = 0;        ///< values per pose
   std::size_t hidden = 1000;  ///< LSTM width; linear layers have half of it, the last hidden one a tenth

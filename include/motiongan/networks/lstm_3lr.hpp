@@ -5,9 +5,10 @@
 
 namespace motiongan {
 
+/// Options of an Lstm3lr.
 struct Lstm3lrOptions {
-  std::size_t dof = 0;  ///< values per pose
-  std::size_t hidden = 1000;
+  std::size_t dof = 0;        ///< values per pose
+  std::size_t hidden = 1000;  ///< width of each layer
 };
 
 /// Three LSTM layers `lstm` over poses, then a linear layer `out` = the next pose.

@@ -6,6 +6,7 @@
 
 namespace motiongan {
 
+/// Options of an LstmBaseline.
 struct LstmBaselineOptions {
   std::size_t dof = 0;       ///< values per pose
   std::size_t classes = 0;   ///< Y, the number of classes

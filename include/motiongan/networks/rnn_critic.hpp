@@ -14,11 +14,12 @@ constexpr NameTable<DiffInput, 2> enum_names(DiffInput) {
   return {{{DiffInput::hidden, "hidden"}, {DiffInput::difference, "difference"}}};
 }
 
+/// Options of an RnnCritic.
 struct RnnCriticOptions {
-  std::size_t vocabulary = 0;  ///< number of words
-  std::size_t dof = 0;         ///< M, values per pose
-  std::size_t hidden = 256;    ///< k, hidden width
-  DiffInput diff_input = DiffInput::hidden;
+  std::size_t vocabulary = 0;                ///< number of words
+  std::size_t dof = 0;                       ///< M, values per pose
+  std::size_t hidden = 256;                  ///< k, hidden width
+  DiffInput diff_input = DiffInput::hidden;  ///< what the second score is made from
 };
 
 /// Scores motion against a text: a weighted sum of one score of the poses and one of their frame differences.

@@ -6,6 +6,7 @@
 
 namespace motiongan {
 
+/// Options of an RnnGenerator.
 struct RnnGeneratorOptions {
   std::size_t vocabulary = 0;  ///< number of words
   std::size_t dof = 0;         ///< M, values per pose
@@ -117,6 +118,7 @@ class RnnGenerator {
     round_to_bf16(named_parameters(*this));
     in_16_bits_ = true;
   }
+  /// Whether weights are read in 16 bits, see bfloat16().
   bool in_16_bits() const { return in_16_bits_; }
 
   void list_parameters(ParameterList& list) {

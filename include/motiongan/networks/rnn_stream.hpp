@@ -9,8 +9,8 @@ namespace motiongan {
 /// The text and noise of a motion in a stream. The noise depends on seed and sample only.
 struct StreamStart {
   std::vector<int> sentence;  ///< word indices
-  std::uint64_t seed = 1;
-  std::uint32_t sample = 0;
+  std::uint64_t seed = 1;     ///< seed of the noise
+  std::uint32_t sample = 0;   ///< selects the noise within a seed
 };
 
 /// Identifies a motion while it is in the stream.
@@ -117,6 +117,7 @@ class RnnStream {
     require(found != row_of_.end(), "the stream has no motion with id ", id, "; it may have been removed");
     return found->second;
   }
+  /// The motion in row `row` of what step() gives.
   StreamId id_of(std::size_t row) const { return ids_.at(row); }
 
   /// The next frames of all motions, as normalised poses [frames, size(), dof]; valid until the next call.

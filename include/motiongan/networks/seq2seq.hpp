@@ -7,10 +7,11 @@
 
 namespace motiongan {
 
+/// Options of a Seq2seq.
 struct Seq2seqOptions {
-  std::size_t dof = 0;      ///< values per pose
-  std::size_t classes = 0;  ///< Y, for the class appended to every pose; 0: unconditional
-  std::size_t hidden = 1024;
+  std::size_t dof = 0;        ///< values per pose
+  std::size_t classes = 0;    ///< Y, for the class appended to every pose; 0: unconditional
+  std::size_t hidden = 1024;  ///< width of the GRU
 };
 
 /// One GRU, with the same weights in encoder and decoder, and a linear layer `out`: each pose is the previous

@@ -10,7 +10,7 @@ namespace motiongan {
 /// with the gates stacked in the order r, z, n. Every parameter is initialised with U(+-1/sqrt(k)).
 /// gru_rollout runs it.
 struct Gru {
-  Var weight_ih, weight_hh, bias_ih, bias_hh;  // [3k, in], [3k, k], [3k], [3k]
+  Var weight_ih, weight_hh, bias_ih, bias_hh;  ///< [3k, in], [3k, k], [3k], [3k]
 
   Gru() = default;
   Gru(Initializer& init, std::size_t in, std::size_t k) {

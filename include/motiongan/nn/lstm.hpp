@@ -12,6 +12,7 @@ struct Embedding {
   Embedding() = default;
   Embedding(Initializer& init, std::size_t rows, std::size_t channels)
       : weight(init.normal(rows, channels)) {}
+  /// Words [n] -> [n, channels].
   Var operator()(const Indices& words) const { return gather_rows(weight, words); }
   void list_parameters(ParameterList& list) { list.add("weight", weight); }
 };
@@ -23,10 +24,11 @@ struct LstmState {
 
 /// Stacked LSTM layers with gate order i, f, g, o. Every parameter is initialised with U(+-1/sqrt(k)).
 struct Lstm {
+  /// Weights and biases of a layer, the gates in PyTorch's order.
   struct Layer {
-    Var weight_ih, weight_hh, bias_ih, bias_hh;  // [4k, in], [4k, k], [4k], [4k]
+    Var weight_ih, weight_hh, bias_ih, bias_hh;  ///< [4k, in], [4k, k], [4k], [4k]
   };
-  std::vector<Layer> layers;
+  std::vector<Layer> layers;  ///< the first reads the input
 
   Lstm() = default;
   Lstm(Initializer& init, std::size_t in, std::size_t k, std::size_t layer_count) {

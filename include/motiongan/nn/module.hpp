@@ -17,10 +17,11 @@ enum class ParameterLayout {
   convolution  ///< [taps, out, in] on the device (one matrix per tap), [out, in, taps] in files
 };
 
+/// A parameter of a network, under the name that it has in files.
 struct NamedParameter {
   std::string name;
-  Var* value = nullptr;
-  ParameterLayout layout = ParameterLayout::plain;
+  Var* value = nullptr;                             ///< the network's own
+  ParameterLayout layout = ParameterLayout::plain;  ///< how it differs from the file's shape
 };
 
 /// While an object of this class exists, this thread creates parameters of at most `most` elements in all:
@@ -96,6 +97,7 @@ class Initializer {
                          .reshape({rows, columns}));
   }
 
+  /// A parameter of equal numbers.
   Var constant(Shape shape, double value) {
     ParameterLimit::count(shape);
     return Var::leaf(full(context_, std::move(shape), value));
@@ -110,10 +112,12 @@ class Initializer {
 /// Collects parameters; the names of a submodule's get its prefix and a dot.
 class ParameterList {
  public:
+  /// Adds a parameter, which must outlive the list.
   void add(const std::string& name, Var& value, ParameterLayout layout = ParameterLayout::plain) {
     items_.push_back({name, &value, layout});
   }
 
+  /// Adds all parameters of a part, their names after "prefix.".
   template <class Module>
   void add_module(const std::string& prefix, Module& module) {
     ParameterList inner;
@@ -135,6 +139,7 @@ std::vector<NamedParameter> named_parameters(Module& module) {
   return list.items();
 }
 
+/// The values of the parameters, in order.
 inline std::vector<Var> values_of(const std::vector<NamedParameter>& parameters) {
   std::vector<Var> values;
   for (const NamedParameter& p : parameters) values.push_back(*p.value);

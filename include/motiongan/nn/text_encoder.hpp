@@ -13,7 +13,7 @@ struct Sentences {
   Indices words;      ///< word ids [longest, rows]; padding past a sentence's end is never used
   Indices lengths;    ///< in words, [rows]
   Indices of_sample;  ///< which row each sample has, [batch]; empty if each has its own
-  std::size_t longest = 0, rows = 0, batch = 0;
+  std::size_t longest = 0, rows = 0, batch = 0;  ///< words of the longest sentence; sentences; samples
 
   Sentences() = default;
 
@@ -50,9 +50,9 @@ struct Sentences {
 /// Word embedding, two LSTM layers of k, then a linear layer on the concatenated h and c of both layers after
 /// each sentence's last word. Returns h_txt, [B, k].
 struct TextEncoder {
-  Embedding embedding;
+  Embedding embedding;  ///< of the words
   Lstm lstm;
-  Linear proj;
+  Linear proj;  ///< of the last states of both layers
 
   TextEncoder() = default;
   TextEncoder(Initializer& init, std::size_t vocabulary, std::size_t k)

@@ -67,7 +67,7 @@ inline Var conv1d_weight(const Var& p, const Var& q, const Offsets& offsets);
 struct Conv1dEpilogue {
   Var bias = {};      ///< [out]
   Var residual = {};  ///< of the result's shape
-  bool relu = false;
+  bool relu = false;  ///< set negative elements to 0 at last
 };
 
 /// y[t] = sum_s x[t + offset_s] * op(W_s) + bias + residual, then ReLU if extras.relu. x is [T, ..., in]; W

@@ -12,6 +12,7 @@ namespace motiongan {
 /// Frame offset of every tap.
 using Offsets = std::vector<int>;
 
+/// The opposite offsets: a convolution with them is the gradient with respect to the input.
 inline Offsets operator-(Offsets offsets) {
   for (int& offset : offsets) offset = -offset;
   return offsets;

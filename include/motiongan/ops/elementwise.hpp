@@ -19,6 +19,7 @@ inline const ElementwiseKernel tanh_grad_kernel("tanh_grad", 2, "v * (1 - w * w)
 inline const ElementwiseKernel sigmoid_grad_kernel("sigmoid_grad", 2, "v * w * (1 - w)");
 }  // namespace detail
 
+/// The product, element by element. Throws Error if the shapes differ.
 inline Var operator*(const Var& x, const Var& y) {
   return record("product", {x, y}, detail::binary(detail::product_kernel, x.value(), y.value()),
                 [](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
@@ -26,6 +27,7 @@ inline Var operator*(const Var& x, const Var& y) {
                 });
 }
 
+/// The quotient, element by element. Throws Error if the shapes differ.
 inline Var operator/(const Var& x, const Var& y) {
   return record("quotient", {x, y}, detail::binary(detail::quotient_kernel, x.value(), y.value()),
                 [](const Node& self, const Var& g, const Needs& needs) -> std::vector<Var> {
@@ -34,6 +36,7 @@ inline Var operator/(const Var& x, const Var& y) {
                 });
 }
 
+/// The square of each element.
 inline Var square(const Var& x) { return x * x; }
 
 namespace detail {
@@ -53,6 +56,7 @@ inline Var leaky_relu(const Var& x, double slope) {
                   return {detail::leaky_relu_grad(g, self.value, slope)};
                 });
 }
+/// max(x, 0).
 inline Var relu(const Var& x) { return leaky_relu(x, 0); }
 
 namespace detail {
@@ -77,6 +81,7 @@ inline Var sigmoid_grad(const Var& g, const Var& y) {
 inline Var itself(const Node& node) { return Var(std::const_pointer_cast<Node>(node.shared_from_this())); }
 }  // namespace detail
 
+/// The hyperbolic tangent of each element.
 inline Var tanh(const Var& x) {
   return record("tanh", {x}, detail::unary(detail::tanh_of_kernel, x.value()),
                 [](const Node& self, const Var& g, const Needs&) -> std::vector<Var> {
@@ -84,6 +89,7 @@ inline Var tanh(const Var& x) {
                 });
 }
 
+/// 1 / (1 + exp(-x)).
 inline Var sigmoid(const Var& x) {
   return record("sigmoid", {x}, detail::unary(detail::sigmoid_of_kernel, x.value()),
                 [](const Node& self, const Var& g, const Needs&) -> std::vector<Var> {
@@ -91,6 +97,7 @@ inline Var sigmoid(const Var& x) {
                 });
 }
 
+/// The exponential of each element.
 inline Var exp(const Var& x) {
   return record("exp", {x}, detail::unary(detail::exp_of_kernel, x.value()),
                 [](const Node& self, const Var& g, const Needs&) -> std::vector<Var> {
@@ -98,12 +105,14 @@ inline Var exp(const Var& x) {
                 });
 }
 
+/// The natural logarithm of each element.
 inline Var log(const Var& x) {
   return record(
       "log", {x}, detail::unary(detail::log_of_kernel, x.value()),
       [](const Node& self, const Var& g, const Needs&) -> std::vector<Var> { return {g / self.inputs[0]}; });
 }
 
+/// The square root of each element.
 inline Var sqrt(const Var& x) {
   return record("sqrt", {x}, detail::unary(detail::sqrt_of_kernel, x.value()),
                 [](const Node& self, const Var& g, const Needs&) -> std::vector<Var> {

@@ -17,6 +17,7 @@ inline const ElementwiseKernel cosine_kernel("cosine_of", 1, "cos(v)");
 
 inline Var cos(const Var& x);
 
+/// The sine of each element, in radians.
 inline Var sin(const Var& x) {
   return record("sin", {x}, detail::unary(detail::sine_kernel, x.value()),
                 [](const Node& self, const Var& g, const Needs&) -> std::vector<Var> {
@@ -24,6 +25,7 @@ inline Var sin(const Var& x) {
                 });
 }
 
+/// The cosine of each element, in radians.
 inline Var cos(const Var& x) {
   return record("cos", {x}, detail::unary(detail::cosine_kernel, x.value()),
                 [](const Node& self, const Var& g, const Needs&) -> std::vector<Var> {

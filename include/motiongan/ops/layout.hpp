@@ -147,7 +147,7 @@ inline Var concatenate(const std::vector<Var>& parts, std::size_t axis) {
 /// no such frame.
 struct FrameShift {
   int first = 0, sign = 1;
-  double outside = 0;
+  double outside = 0;  ///< value of frames that do not exist
 };
 
 /// Shifts each sample's frames by its own offset: x [T, B, C], offset [B] -> [frames_out, B, C]. Used for

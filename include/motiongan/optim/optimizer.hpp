@@ -22,11 +22,15 @@ class Optimizer {
   /// concatenated.
   virtual std::vector<std::pair<std::string, Tensor>> state() const = 0;
 
+  /// What is optimised.
   const std::vector<Var>& parameters() const { return parameters_; }
   /// All parameters concatenated, [n]: the memory that they are views of.
   const Tensor& values() const { return values_; }
+  /// The number of steps taken; set_steps() is for a run that resumes.
+  /// \{
   std::size_t steps() const { return steps_; }
   void set_steps(std::size_t steps) { steps_ = steps; }
+  /// \}
   /// The next steps are made with this share of the learning rate, 1 at first. Not part of the state.
   void set_rate_factor(double factor) { rate_factor_ = factor; }
 
@@ -89,8 +93,9 @@ class Optimizer {
   /// Updates values() from gradients(); steps() already counts this step.
   virtual void update() = 0;
 
+  /// The share of the learning rate in this step.
   double rate_factor() const { return rate_factor_; }
-  const Tensor& gradients() const { return gradients_; }  // in the order of values(), [n]
+  const Tensor& gradients() const { return gradients_; }  ///< in the order of values(), [n]
   const Context& context() const { return values_.context(); }
 
  private:

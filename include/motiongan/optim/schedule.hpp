@@ -8,6 +8,7 @@
 
 namespace motiongan {
 
+/// How the learning rate falls during a training.
 enum class LearningSchedule { constant, linear, cosine };
 constexpr NameTable<LearningSchedule, 3> enum_names(LearningSchedule) {
   return {{{LearningSchedule::constant, "constant"},
@@ -15,8 +16,9 @@ constexpr NameTable<LearningSchedule, 3> enum_names(LearningSchedule) {
            {LearningSchedule::cosine, "cosine"}}};
 }
 
+/// Options of a learning rate that falls.
 struct ScheduleOptions {
-  LearningSchedule shape = LearningSchedule::constant;
+  LearningSchedule shape = LearningSchedule::constant;  ///< how the rate falls
   std::size_t iterations = 0;  ///< over which the rate falls; 0: those of the training
 
   /// The rate falls to this share of the learning rate, and stays there in a training that goes on.

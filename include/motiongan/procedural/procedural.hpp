@@ -17,11 +17,12 @@
 
 namespace motiongan::motion {
 
+/// Options of procedural_motions().
 struct ProceduralOptions {
-  std::size_t clips = 64;
-  double seconds = 10;  ///< length of each clip
-  double rate = 30;     ///< frames per second
-  std::uint64_t seed = 1;
+  std::size_t clips = 64;  ///< how many
+  double seconds = 10;     ///< length of each clip
+  double rate = 30;        ///< frames per second
+  std::uint64_t seed = 1;  ///< the same seed gives the same clips
 };
 
 namespace procedural {

@@ -13,6 +13,7 @@
 
 namespace motiongan {
 
+/// A character of an ActionStream.
 struct ActionCharacterOptions {
   const ActionPrior* prior = nullptr;  ///< its first T frames; only read by add()
   std::size_t label = 0;               ///< index of its class, see PositionFormat::class_index()
@@ -35,6 +36,7 @@ struct ActionCharacterOptions {
 ///     stream.set_class(id, "run");
 class ActionStream {
  public:
+  /// Names a character; not used again once it was removed.
   using Id = std::size_t;
 
   /// Works with the attention generator and the LSTM baseline. The weights are read at construction; the
@@ -47,6 +49,7 @@ class ActionStream {
   ActionStream(const ActionStream&) = delete;
   ActionStream& operator=(const ActionStream&) = delete;
 
+  /// The number of characters.
   std::size_t size() const { return characters_.size(); }
   const motion::PositionFormat& format() const { return format_; }
 
@@ -92,7 +95,9 @@ class ActionStream {
     check_class(label);
     character(id).label = label;
   }
+  /// Changes the class, by its name, from the next step. Throws Error for an unknown class.
   void set_class(Id id, std::string_view name) { character(id).label = format_.class_index(name); }
+  /// The name of its class.
   const std::string& class_of(Id id) const { return format_.classes[character(id).label]; }
 
   /// Position and heading of its root after the last step; assign to it to move the character.

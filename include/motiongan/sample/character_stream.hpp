@@ -19,6 +19,7 @@
 
 namespace motiongan {
 
+/// How a character of a CharacterStream begins.
 struct CharacterStart {
   std::string prompt;        ///< a text, or the name of a class
   std::uint64_t seed = 1;    ///< seed of the noise, if the model takes noise
@@ -46,6 +47,7 @@ struct CharacterStart {
 ///     stream.set_prompt(id, "run");
 class CharacterStream {
  public:
+  /// Names a character; not used again once it was removed.
   using Id = std::size_t;
 
   /// Throws Error for a model with a CNN generator. The weights are read at construction.
@@ -63,6 +65,7 @@ class CharacterStream {
         motion::depth_first({"", format.skeleton(), format.rate, 0, {}}).skeleton);
   }
 
+  /// The number of characters.
   std::size_t size() const { return characters_.size(); }
   /// Frames per second.
   double rate() const { return actions() ? actions()->format().rate : texts()->rate(); }
@@ -73,6 +76,7 @@ class CharacterStream {
   const motion::Skeleton& skeleton() const { return skeleton_; }
   /// The ids of all characters, in the order in which they were added.
   const std::vector<Id>& ids() const { return ids_; }
+  /// Whether it was added and not removed.
   bool contains(Id id) const { return characters_.contains(id); }
 
   /// Adds a character; it moves with the next step. Throws Error for a text without words, an unknown class,

@@ -21,9 +21,10 @@ namespace motiongan {
 /// Identifies a character while it is in its stream.
 using CharacterId = StreamId;
 
+/// How a character of a MotionStream begins.
 struct CharacterOptions {
-  std::string text;  ///< its description
-  std::uint64_t seed = 1;
+  std::string text;          ///< its description
+  std::uint64_t seed = 1;    ///< seed of the noise
   std::uint32_t sample = 0;  ///< selects the noise within a seed
   /// Motion to continue from its last frame, at any frame rate. Only read by add().
   const motion::Motion* prior = nullptr;
@@ -54,6 +55,7 @@ class MotionStream {
   MotionStream(const MotionStream&) = delete;
   MotionStream& operator=(const MotionStream&) = delete;
 
+  /// The number of characters.
   std::size_t size() const { return stream_.size(); }
   double rate() const { return format_.rate; }  ///< frames per second
   const motion::MotionFormat& format() const { return format_; }

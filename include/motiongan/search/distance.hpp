@@ -51,8 +51,8 @@ inline double search_distance(const motion::MotionFormat& format, std::span<cons
 struct SearchLayout {
   std::vector<std::size_t> plain;
   std::vector<std::size_t> track;  ///< x, z, yaw if windows are turned; then other relative dimensions
-  bool turned = false;
-  double yaw_scale = 0;  ///< factor from the normalised yaw to radians
+  bool turned = false;             ///< whether windows are turned to a common heading
+  double yaw_scale = 0;            ///< factor from the normalised yaw to radians
 
   explicit SearchLayout(const motion::MotionFormat& format) {
     std::vector<bool> rest = format.relative_mask();

@@ -133,12 +133,14 @@ class IndexFile {
 /// The clips of a collection in a model's format.
 class SearchIndex {
  public:
+  /// An index without clips.
   explicit SearchIndex(const motion::MotionFormat& format, const motion::ClipOptions& clips = {})
       : format_(format), reading_(clips), layout_(format) {}
 
   const motion::MotionFormat& format() const { return format_; }
   const SearchLayout& layout() const { return layout_; }
   const std::vector<SearchClip>& clips() const { return clips_; }  ///< in the order of their paths
+  /// The normalised poses of all clips.
   const SearchFrames& frames() const { return frames_; }
 
   /// Adds a clip and its normalised poses [clip.frames, dof]. Throws Error for another size.

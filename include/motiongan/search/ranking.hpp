@@ -24,12 +24,14 @@ struct SearchHit {
   double distance() const { return nearest.front().distance; }
 };
 
+/// What a search found.
 struct SearchRanking {
   std::vector<SearchHit> hits;  ///< nearest first
   double median = 0;            ///< median distance of all clips (or windows), for comparison
   std::size_t windows = 0;      ///< number of windows compared
 };
 
+/// Options of rank_clips().
 struct SearchOptions {
   std::size_t top = 10;       ///< number of results
   std::size_t hop = 0;        ///< frames between windows of a clip; 0: half a window

@@ -20,6 +20,7 @@ struct WindowDistances {
   std::vector<std::int32_t> shift;  ///< [windows, hypotheses]
 };
 
+/// Options of SearchWindows.
 struct SearchWindowsOptions {
   std::size_t chunk = 0;                          ///< windows per batch; 0: as many as fit 16 MB of spectra
   std::size_t keep_bytes = std::size_t{1} << 30;  ///< keep spectra for later queries if they fit in this

@@ -18,20 +18,20 @@ struct AttentionTrainOptions {
   std::size_t iterations = 20'000;  ///< each: critic_steps, one classifier step, generator_steps
   std::size_t critic_steps = 5;     ///< n_critic
   std::size_t generator_steps = 1;  ///< n_generator
-  std::size_t batch = 64;
-  std::size_t rollouts = 2;        ///< n_ar: seconds generated in a row, each from the one before
-  double lambda_gp = 10;           ///< weight of the gradient penalty (eq. 6)
-  double weight_clip = 0;          ///< above 0: clip the critic's weights to +-weight_clip; no penalty then
-  double skeleton_weight = 1;      ///< weight of L_skel (eq. 9); 0: off
-  double blend_weight = 1;         ///< weight of L_blend (eq. 10); 0: off
-  double class_weight = 1;         ///< weight of L_class (eq. 11); 0: off
-  bool skeleton_vectors = false;   ///< L_skel compares bone vectors, as eq. 9 is printed, not bone lengths
-  bool critic_classes = false;     ///< give the critic the class
-  bool critic_directions = false;  ///< give the critic the directions of the bones too; the paper: no
-  bool balanced = true;            ///< draw classes with equal probability, however many clips they have
-  AdamOptions adam{};              ///< used for all three networks
-  double ema = 0.999;              ///< decay of the running mean of the generator's weights; 0: none
-  std::uint64_t seed = 1;
+  std::size_t batch = 64;           ///< windows in a step
+  std::size_t rollouts = 2;         ///< n_ar: seconds generated in a row, each from the one before
+  double lambda_gp = 10;            ///< weight of the gradient penalty (eq. 6)
+  double weight_clip = 0;           ///< above 0: clip the critic's weights to +-weight_clip; no penalty then
+  double skeleton_weight = 1;       ///< weight of L_skel (eq. 9); 0: off
+  double blend_weight = 1;          ///< weight of L_blend (eq. 10); 0: off
+  double class_weight = 1;          ///< weight of L_class (eq. 11); 0: off
+  bool skeleton_vectors = false;    ///< L_skel compares bone vectors, as eq. 9 is printed, not bone lengths
+  bool critic_classes = false;      ///< give the critic the class
+  bool critic_directions = false;   ///< give the critic the directions of the bones too; the paper: no
+  bool balanced = true;             ///< draw classes with equal probability, however many clips they have
+  AdamOptions adam{};               ///< used for all three networks
+  double ema = 0.999;               ///< decay of the running mean of the generator's weights; 0: none
+  std::uint64_t seed = 1;           ///< of the initial weights, batches and noise
 
   /// Update steps in an iteration; each draws its own random numbers.
   std::size_t steps() const { return total_steps({critic_steps, 1, generator_steps}); }

@@ -9,11 +9,11 @@ namespace motiongan {
 
 /// Options of BaselineTrainer.
 struct BaselineTrainOptions {
-  std::size_t iterations = 20'000;
-  std::size_t batch = 64;
-  bool balanced = true;  ///< draw classes with equal probability, however many clips they have
+  std::size_t iterations = 20'000;  ///< steps
+  std::size_t batch = 64;           ///< windows in a step
+  bool balanced = true;             ///< draw classes with equal probability, however many clips they have
   AdamOptions adam{};
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1;  ///< of the initial weights, batches and noise
 
   /// Update steps in an iteration.
   std::size_t steps() const { return 1; }

@@ -54,6 +54,7 @@ inline RunRecord read_run_record(const io::SafeTensors& checkpoint, const std::s
     if (key.starts_with("note.")) record.notes[key.substr(5)] = value;
   return record;
 }
+/// read_run_record() of a checkpoint on disk.
 inline RunRecord read_run_record(const std::filesystem::path& checkpoint) {
   return read_run_record(io::SafeTensors::read(checkpoint), checkpoint.string());
 }

@@ -13,19 +13,19 @@ namespace motiongan {
 /// Options of DvganTrainer. The defaults are the paper's (Lin & Amer, section 5.2).
 struct DvganTrainOptions {
   std::size_t iterations = 20'000;  ///< each is `critic_steps` critic steps and one generator step
-  std::size_t critic_steps = 10;
-  std::size_t batch = 64;
-  double lambda_gp = 10;    ///< weight of the gradient penalty (eq. 3)
-  AdamOptions adam{};       ///< used for both networks
-  bool input_shift = true;  ///< shift each real/fake pair by up to +-N/2 frames at the critic's input
-  DvganCriticOptions critic{};
-  BodyLossOptions body{};  ///< not in the paper
+  std::size_t critic_steps = 10;    ///< for each step of the generator
+  std::size_t batch = 64;           ///< windows in a step
+  double lambda_gp = 10;            ///< weight of the gradient penalty (eq. 3)
+  AdamOptions adam{};               ///< used for both networks
+  bool input_shift = true;          ///< shift each real/fake pair by up to +-N/2 frames at the critic's input
+  DvganCriticOptions critic{};      ///< which critic, and what it sees
+  BodyLossOptions body{};           ///< not in the paper
   /// Fraction of the steps, 0..1, whose fakes are completions of the first 1 to N/2 frames of the real motion
   /// (the same number for the whole batch). Not in the paper: training on completions improves completion.
   /// Above 0 it requires an RNN generator.
   double completion_share = 0;
-  double ema = 0.999;  ///< decay of the running mean of the generator's weights (WeightMean); 0: none
-  std::uint64_t seed = 1;
+  double ema = 0.999;      ///< decay of the running mean of the generator's weights (WeightMean); 0: none
+  std::uint64_t seed = 1;  ///< of the initial weights, batches and noise
 
   /// Update steps in an iteration; each draws its own random numbers.
   std::size_t steps() const { return total_steps({critic_steps, 1}); }

@@ -14,8 +14,8 @@ namespace motiongan {
 /// the noise schedule is that of the published code of structural RNNs (Jain et al. 2016), which also trains
 /// ERD and LSTM-3LR.
 struct PredictionTrainOptions {
-  std::size_t iterations = 100'000;
-  std::size_t batch = 16;
+  std::size_t iterations = 100'000;                                       ///< steps
+  std::size_t batch = 16;                                                 ///< windows in a step
   std::size_t prefix = 50, future = 25;                                   ///< frames given, frames to predict
   SgdOptions sgd{};                                                       ///< used for seq2seq
   AdamOptions adam{.learning_rate = 1e-3, .beta1 = 0.9, .beta2 = 0.999};  ///< used for the other three

@@ -25,8 +25,8 @@ using NamedValue = std::pair<std::string_view, double>;
 
 /// Options of ProgressBar.
 struct ProgressOptions {
-  std::string label = "iteration";
-  std::FILE* out = stderr;
+  std::string label = "iteration";        ///< what is counted
+  std::FILE* out = stderr;                ///< where the bar is drawn
   double terminal_interval = 0.1;         ///< seconds between redraws on a terminal
   double plain_interval = 10;             ///< seconds between lines elsewhere
   std::optional<bool> terminal = {};      ///< whether `out` is a terminal; not set: asked of the system

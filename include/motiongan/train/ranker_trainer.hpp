@@ -13,11 +13,11 @@ namespace motiongan {
 
 /// Options of RankerTrainer.
 struct RankerTrainOptions {
-  std::size_t iterations = 2000;
-  std::size_t batch = 64;
+  std::size_t iterations = 2000;   ///< steps
+  std::size_t batch = 64;          ///< windows in a step
   std::size_t descriptions = 250;  ///< K, candidates in a step: those of its clips, and random others
   AdamOptions adam{.learning_rate = 1e-4, .beta1 = 0.9, .beta2 = 0.999};
-  std::uint64_t seed = 1;
+  std::uint64_t seed = 1;  ///< of the initial weights and batches
 
   /// Update steps in an iteration.
   std::size_t steps() const { return 1; }

@@ -27,6 +27,7 @@ struct RunFiles {
   /// Where a resumed run moves a log that cannot be continued.
   std::filesystem::path damaged_log() const { return folder / "log.damaged.csv"; }
   std::filesystem::path split() const { return folder / "split.tsv"; }
+  /// The file of the network of this name.
   std::filesystem::path network(const std::string& name) const { return folder / (name + ".safetensors"); }
 };
 

@@ -19,7 +19,7 @@ namespace motiongan {
 
 /// A loss, or another number of an iteration, under its name in the log and the progress line.
 struct NamedLoss {
-  const char* name;
+  const char* name;  ///< in the log
   double value;
 };
 
@@ -27,8 +27,8 @@ struct NamedLoss {
 struct TrainedPart {
   std::string name;  ///< prefix of its tensors in a checkpoint
   std::vector<NamedParameter> parameters;
-  Optimizer* optimizer = nullptr;
-  WeightMean* mean = nullptr;  ///< of its weights, which are then what generates; or none
+  Optimizer* optimizer = nullptr;  ///< steps them
+  WeightMean* mean = nullptr;      ///< of its weights, which are then what generates; or none
 };
 
 /// The sum of the steps of an iteration, or the largest number there is if that would be exceeded.
@@ -65,6 +65,7 @@ class Trainer {
   virtual void iterate() = 0;
   /// Iterations done so far.
   std::size_t iteration() const { return iteration_; }
+  /// For a run that resumes.
   void set_iteration(std::size_t iteration) { iteration_ = iteration; }
   /// Total number of iterations.
   virtual std::size_t iterations() const = 0;
@@ -74,6 +75,7 @@ class Trainer {
     check_parallel(parallel, batch());
     parallel_ = std::move(parallel);
   }
+  /// How batches are divided among processes.
   const Parallel& parallel() const { return parallel_; }
   /// Samples in a step, on all ranks together.
   virtual std::size_t batch() const = 0;

@@ -15,6 +15,7 @@
 
 namespace motiongan::view {
 
+/// Red, green and blue, 0 to 255.
 struct Color {
   std::uint8_t r = 0, g = 0, b = 0;
   friend bool operator==(const Color&, const Color&) = default;

@@ -18,8 +18,9 @@ namespace motiongan::view {
 
 /// What a motion was asked for, in its world: drawn beside it.
 struct Marks {
+  /// A point, and when a joint should be there.
   struct Target {
-    motion::Vec3 place{};
+    motion::Vec3 place{};     ///< in the world
     double from = 0, to = 0;  ///< seconds
   };
   std::vector<motion::Vec3> path = {};      ///< over the ground; heights do not count
@@ -32,7 +33,7 @@ struct ViewedMotion {
   std::string title;  ///< UTF-8
   motion::Motion motion;
   std::size_t seed_frames = 0;  ///< number of given frames at the start, drawn in grey
-  Marks marks = {};
+  Marks marks = {};             ///< what it was asked for
 };
 
 using motion::Side;

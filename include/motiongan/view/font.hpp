@@ -9,8 +9,11 @@
 
 namespace motiongan::view {
 
+/// Pixels of a character at scale 1.
+/// \{
 inline constexpr std::size_t glyph_width = 5;
 inline constexpr std::size_t glyph_height = 7;
+/// \}
 inline constexpr std::size_t line_height = 9;    ///< including the descenders of g, p, q and y
 inline constexpr std::size_t glyph_advance = 6;  ///< pixels from one character to the next at scale 1
 

@@ -17,11 +17,12 @@ namespace motiongan::view {
 
 /// A matrix to draw; row 0 is at the top, column 0 at the left.
 struct HeatMap {
-  std::string title = {};
+  std::string title = {};  ///< above the map
   std::size_t rows = 0, columns = 0;
   std::vector<float> values;  ///< [rows, columns], non-negative, such as attention weights
 };
 
+/// Options of the pictures of heat maps.
 struct HeatMapOptions {
   std::string title = {};         ///< above all maps
   std::string row_label = {};     ///< what rows are, such as "query frame"

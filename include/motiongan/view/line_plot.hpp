@@ -17,13 +17,14 @@ namespace motiongan::view {
 
 /// A curve and its name in the legend.
 struct Series {
-  std::string name;
+  std::string name;          ///< in the legend
   std::vector<double> x, y;  ///< [points] each; a point that is not finite leaves a gap
 };
 
+/// Options of a plot.
 struct PlotOptions {
   std::string title = {};
-  std::string x_label = {};
+  std::string x_label = {};               ///< below the axis
   std::size_t width = 960, height = 480;  ///< pixels
 };
 

@@ -19,6 +19,7 @@
 
 namespace motiongan::view {
 
+/// Options of an HTML page that plays motions.
 struct PlayerOptions {
   std::string title = "motion";  ///< page title, UTF-8
   double max_rate = 60;          ///< frames per second; faster motions are subsampled to keep the page small

@@ -17,6 +17,7 @@
 
 namespace motiongan::view {
 
+/// Options of a picture of poses in a row.
 struct StripOptions {
   std::size_t poses = 10;           ///< per row, including the first and the last frame
   std::size_t figure_height = 130;  ///< height of a standing figure in pixels
