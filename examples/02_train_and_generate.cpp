@@ -1,5 +1,6 @@
 // Trains a small DVGAN on built-in motion and generates with it. For your own clips only `data` changes:
-//   auto data = motion::Dataset::from_bvh("clips/", {.frames = 32, .rate = 4.0, .captions = "captions.tsv"});
+//
+//     auto data = motion::Dataset::from_bvh("clips/", {.captions = "captions.tsv"});
 #include <cstdio>
 #include <motiongan.hpp>
 using namespace motiongan;

@@ -1,6 +1,9 @@
 /* Characters of a model, frame by frame, from C:
- *   stream MODEL PROMPT [PRIOR]     MODEL: a model file or a run's folder; PRIOR: a clip, for a model of
- * classes A hundred of them in rows of ten; half of them do something else after two seconds. */
+ *
+ *     stream MODEL PROMPT [PRIOR]
+ *
+ * MODEL is a model file or a run's folder; PRIOR is a clip, which a model of classes continues. A hundred
+ * characters stand in rows of ten; half of them do something else after two seconds. */
 #include <motiongan.h>
 #include <stdio.h>
 #include <stdlib.h>

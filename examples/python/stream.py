@@ -2,7 +2,7 @@
 
     python3 stream.py libmotiongan.so MODEL PROMPT [PRIOR]
 
-MODEL is a model file or a run's folder; PRIOR is a clip, which a model of classes continues.
+MODEL is a model file or the folder of a run; PRIOR is a clip, which a model of classes continues.
 """
 import ctypes as c
 import sys
