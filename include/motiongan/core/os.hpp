@@ -23,6 +23,7 @@
 #include <string>
 #include <string_view>
 
+/// What is asked of the operating system.
 namespace motiongan::os {
 
 // ---- files: a function that can fail returns a negative handle or false, and errno says why
@@ -53,8 +54,10 @@ inline FileHandle open_or_create_file(const std::filesystem::path& path) {
   return ::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
 }
 
+/// Closes a file; false if what was written could not be kept.
 inline bool close_file(FileHandle file) { return ::close(file) == 0; }
 
+/// Writes all bytes, also where the system takes some at a time.
 inline bool write_all(FileHandle file, const void* bytes, std::size_t size) {
   for (const char* at = static_cast<const char*>(bytes); size > 0;) {
     const ssize_t n = ::write(file, at, size);
@@ -82,6 +85,7 @@ inline void flush_folder(const std::filesystem::path& folder) {
   ::close(handle);
 }
 
+/// Removes a file, if it is there.
 inline void remove_file(const std::filesystem::path& path) { ::unlink(path.c_str()); }
 
 /// Takes the lock of an open file, which the system holds for this process until it is closed or the process
@@ -104,6 +108,7 @@ inline bool overwrite(FileHandle file, std::string_view text) {
 
 // ---- the process, the machine, the terminal
 
+/// The number of this process.
 inline long process_id() { return ::getpid(); }
 
 /// The machine's name on the network; empty if it has none.
@@ -131,10 +136,12 @@ inline bool random_bytes(std::span<unsigned char> bytes) {
   return ::getentropy(bytes.data(), bytes.size()) == 0;
 }
 
+/// Sets an environment variable of this process.
 inline bool set_environment(const char* name, const std::string& value) {
   return ::setenv(name, value.c_str(), 1) == 0;
 }
 
+/// Whether a person may be reading what is written there.
 inline bool is_terminal(std::FILE* stream) { return ::isatty(::fileno(stream)) == 1; }
 
 /// Columns of the terminal; 0 if there is none, or it does not say.
@@ -153,8 +160,10 @@ inline void open_standard_streams() {
 
 // ---- signals
 
+/// A function that takes signals.
 using SignalHandler = void (*)(int);
 
+/// Whether the signal does nothing, as under nohup.
 inline bool is_signal_ignored(int number) {
   struct sigaction now {};
   return ::sigaction(number, nullptr, &now) == 0 && now.sa_handler == SIG_IGN;
