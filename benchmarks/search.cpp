@@ -94,7 +94,7 @@ double peer_ms(const std::vector<float>& poses, const std::vector<std::vector<fl
   for (int i = 0; i < 3; ++i) {
     const double start = bench::seconds();
     {
-      std::jthread second([&] { sink = sink + plain_search(poses, 0, clips / share / 2, made); });
+      std::thread second([&] { sink = sink + plain_search(poses, 0, clips / share / 2, made); });
       const float mine = plain_search(poses, clips / share / 2, clips / share, made);
       second.join();
       sink = sink + mine;

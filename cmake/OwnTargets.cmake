@@ -2,10 +2,12 @@
 
 add_library(motiongan_own INTERFACE)
 target_link_libraries(motiongan_own INTERFACE motiongan)
-# GCC 12 reports false positives of -Wmaybe-uninitialized for an empty std::optional, depending on inlining.
+# GCC 12 reports false positives of -Wmaybe-uninitialized for an empty std::optional, depending on inlining. Clang 19
+# calls what std::stable_sort() of GCC 12's library uses deprecated.
 target_compile_options(motiongan_own INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized> $<$<BOOL:${MOTIONGAN_WERROR}>:-Werror>)
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized> $<$<BOOL:${MOTIONGAN_WERROR}>:-Werror>
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-error=deprecated-declarations>)
 
 # own_program(<target> <source>...): an executable of this project.
 function(own_program target)

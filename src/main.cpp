@@ -5,6 +5,7 @@
 #include <iostream>
 #include <new>
 
+#include "motiongan/core/os.hpp"
 #include "shared/command_line.hpp"
 #include "shared/shell.hpp"
 #include "shared/signals.hpp"

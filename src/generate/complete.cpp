@@ -1,8 +1,8 @@
 // motiongan complete: continues a clip, guided by a text.
-#include <charconv>
 #include <cmath>
 
 #include "generate/streaming.hpp"
+#include "motiongan/io/read_number.hpp"
 #include "motiongan/metrics/euler_error.hpp"
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/motion/motion.hpp"
@@ -44,7 +44,7 @@ std::size_t first_frame(const std::string& from, double rate) {
   const bool seconds = from.ends_with('s');
   const char *begin = from.data(), *end = begin + from.size() - (seconds ? 1 : 0);
   double value = -1;
-  const auto [stop, problem] = std::from_chars(begin, end, value);
+  const auto [stop, problem] = io::read_number(begin, end, value);
   require(problem == std::errc() && stop == end && value >= 0 && value < 1e9 &&
               (seconds || value == std::floor(value)),
           "--from ", from, ": expected a frame of the prior, such as 240, or seconds, such as 2.5s");

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <system_error>
+#include <type_traits>
+
+#include "motiongan/io/read_number.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -12,7 +15,13 @@ namespace {
 template <class T>
 std::errc read(std::string_view text, T& value) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const char *first = text.data(), *last = first + text.size();
+  std::from_chars_result result{};
+  if constexpr (std::is_same_v<T, double>)
+    result = io::read_number(first, last, value);
+  else
+    result = std::from_chars(first, last, value);
+  const auto [end, problem] = result;
   return end == text.data() + text.size() ? problem : std::errc::invalid_argument;
 }
 

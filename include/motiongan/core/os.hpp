@@ -7,11 +7,15 @@
 #endif
 
 #include <fcntl.h>
+#include <locale.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
 #include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#ifdef __APPLE__
+#include <xlocale.h>
+#endif
 
 #include <cerrno>
 #include <csignal>
@@ -134,6 +138,12 @@ inline double available_memory() {
 /// Fills at most 256 bytes with random numbers that nobody can guess.
 inline bool random_bytes(std::span<unsigned char> bytes) {
   return ::getentropy(bytes.data(), bytes.size()) == 0;
+}
+
+/// strtod() with a decimal point, whatever the locale of the process.
+inline double text_to_double(const char* text, char** end) {
+  static const locale_t plain = ::newlocale(LC_ALL_MASK, "C", nullptr);
+  return ::strtod_l(text, end, plain);
 }
 
 /// Sets an environment variable of this process.

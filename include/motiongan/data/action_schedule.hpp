@@ -1,6 +1,5 @@
 // Schedules: the classes a character goes through, and for how long, such as "walk:3s,run:5s".
 #pragma once
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -9,6 +8,7 @@
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/data/position_format.hpp"
+#include "motiongan/io/read_number.hpp"
 
 namespace motiongan {
 
@@ -44,7 +44,7 @@ inline std::size_t piece_frames(std::string_view text, double rate, const std::s
   const bool seconds = text.ends_with('s');
   const std::string_view digits = text.substr(0, text.size() - (seconds ? 1 : 0));
   double value = -1;
-  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  const auto [end, problem] = io::read_number(digits.data(), digits.data() + digits.size(), value);
   require(problem == std::errc() && end == digits.data() + digits.size() && value > 0 &&
               (seconds || value == std::floor(value)),
           what, ": found the length '", text,

@@ -120,7 +120,7 @@ inline std::vector<ClipSource> with_captions(std::vector<ClipSource> sources,
       out.push_back({concat(id, "@", caption_detail::seconds_in_id(part.begin), "-",
                             caption_detail::seconds_in_id(part.end)),
                      name, std::move(captions),
-                     [shared, part = part](const LoadChange& change) { return shared->part(part, change); },
+                     [shared, own = part](const LoadChange& change) { return shared->part(own, change); },
                      id});
   }
   return out;

@@ -1,7 +1,6 @@
 // Captions in one .txt file for each clip, with the time ranges of HumanML3D.
 #pragma once
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -18,6 +17,7 @@
 #include "motiongan/data/caption_file.hpp"
 #include "motiongan/data/caption_match.hpp"
 #include "motiongan/formats/clip_files.hpp"
+#include "motiongan/io/read_number.hpp"
 
 namespace motiongan::motion {
 
@@ -27,7 +27,7 @@ namespace caption_detail {
 inline std::optional<double> number_of(std::string_view text) {
   text = trimmed(text);
   double value = 0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const auto [end, problem] = io::read_number(text.data(), text.data() + text.size(), value);
   return problem == std::errc() && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 

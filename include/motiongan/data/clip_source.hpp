@@ -105,10 +105,9 @@ inline void in_two_threads(std::size_t count, const std::function<void(std::size
       }
     }
   };
-  {
-    std::jthread second(worker);
-    worker();
-  }
+  std::thread second(worker);  // it catches all that is thrown
+  worker();
+  second.join();
   for (const std::exception_ptr& error : errors)
     if (error) std::rethrow_exception(error);
 }

@@ -1,7 +1,6 @@
 // A path over the ground as a text file.
 #pragma once
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <optional>
@@ -12,6 +11,7 @@
 #include "motiongan/direct/constraints.hpp"
 #include "motiongan/formats/tab_lines.hpp"
 #include "motiongan/formats/text_file.hpp"
+#include "motiongan/io/read_number.hpp"
 
 namespace motiongan {
 
@@ -31,7 +31,7 @@ inline std::vector<std::string_view> path_cells(std::string_view line) {
 /// A finite number, and nothing else in the cell.
 inline std::optional<double> path_number(std::string_view cell) {
   double value = 0;
-  const auto [end, code] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  const auto [end, code] = io::read_number(cell.data(), cell.data() + cell.size(), value);
   if (code != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value)) return {};
   return value;
 }

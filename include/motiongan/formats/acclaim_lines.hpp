@@ -2,7 +2,6 @@
 #pragma once
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "motiongan/core/error.hpp"
+#include "motiongan/io/read_number.hpp"
 #include "motiongan/motion/skeleton.hpp"
 
 namespace motiongan::motion::acclaim_detail {
@@ -76,7 +76,7 @@ class Lines {
   static bool parse(std::string_view word, double& value) {
     if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
     const char* const end = word.data() + word.size();
-    const auto [stop, problem] = std::from_chars(word.data(), end, value);
+    const auto [stop, problem] = io::read_number(word.data(), end, value);
     if (stop != end) return false;
     const bool tiny = word.find("e-") != word.npos || word.find("E-") != word.npos;
     if (problem == std::errc::result_out_of_range && tiny) value = 0;

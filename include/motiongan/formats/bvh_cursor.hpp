@@ -12,6 +12,7 @@
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/formats/short_decimal.hpp"
+#include "motiongan/io/read_number.hpp"
 
 namespace motiongan::motion {
 
@@ -196,7 +197,7 @@ class Cursor {
       at_ = static_cast<std::size_t>(stop - text_.data());
       return value;
     }
-    const auto [stop, error] = std::from_chars(start, end, value);
+    const auto [stop, error] = io::read_number(start, end, value);
     const bool whole = ends_word(stop);
     if (error == std::errc() && whole && std::isfinite(value)) {
       at_ = static_cast<std::size_t>(stop - text_.data());
@@ -236,7 +237,7 @@ class Cursor {
   static bool is_number(std::string_view word) {
     if (word.starts_with('+')) word.remove_prefix(1);
     double value = 0;
-    const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    const auto [stop, error] = io::read_number(word.data(), word.data() + word.size(), value);
     return error != std::errc::invalid_argument && stop == word.data() + word.size();
   }
 

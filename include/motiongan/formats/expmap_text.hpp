@@ -3,7 +3,6 @@
 #pragma once
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
@@ -18,6 +17,7 @@
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/formats/text_file.hpp"
+#include "motiongan/io/read_number.hpp"
 
 namespace motiongan::motion {
 
@@ -40,7 +40,7 @@ inline std::optional<double> next_number(std::string_view& line, std::string_vie
   const char* const first = word.data() + (word.starts_with('+') ? 1 : 0);
   const char* const last = word.data() + word.size();
   double value = 0;
-  const auto [end, problem] = std::from_chars(first, last, value);
+  const auto [end, problem] = io::read_number(first, last, value);
   require(problem == std::errc() && end == last && std::isfinite(value), name, ":", number, ": found '",
           word.substr(0, 40), "', expected a finite number such as -0.25 or 1.5e-3");
   return value;

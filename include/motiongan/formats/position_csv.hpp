@@ -12,6 +12,7 @@
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/formats/bone_list.hpp"
+#include "motiongan/io/read_number.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/motion/position_clip.hpp"
 
@@ -137,7 +138,7 @@ inline PositionClip parse_position_csv(std::string_view text, const Skeleton& sk
       const std::string_view field = fields[i].substr(fields[i].starts_with('+') ? 1 : 0);
       const std::size_t place = i < shift ? 0 : columns.place[i - shift];
       double value = 0;
-      const auto [stop, problem] = std::from_chars(field.data(), field.data() + field.size(), value);
+      const auto [stop, problem] = io::read_number(field.data(), field.data() + field.size(), value);
       const bool number = problem == std::errc() && stop == field.data() + field.size();
       if (!number || !std::isfinite(value))
         throw Error(name, ":", line, ": found '", fields[i].substr(0, 40), "' in column ", i + 1, " (",

@@ -173,8 +173,8 @@ inline std::optional<ShapedLimbs> limbs_by_shape(const Skeleton& skeleton) {
   }
   ShapedLimbs out;
   for (std::size_t s : {0u, 1u})
-    (s == 0 ? out.left : out.right) = {arm[s].before, arm[s].upper, arm[s].lower, arm[s].end,
-                                       leg[s].upper,  leg[s].lower, leg[s].end,   leg[s].after};
+    (s == 0 ? out.left : out.right) = LimbJoints{arm[s].before, arm[s].upper, arm[s].lower, arm[s].end,
+                                                 leg[s].upper,  leg[s].lower, leg[s].end,   leg[s].after};
   // The highest end that hangs on the chest and on no arm.
   std::vector<std::size_t> tops{shape.chain(chest, tips[0]).front(), shape.chain(chest, tips[1]).front()};
   std::optional<std::size_t> crown;

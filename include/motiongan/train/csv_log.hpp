@@ -19,6 +19,7 @@
 
 #include "motiongan/core/error.hpp"
 #include "motiongan/io/atomic_file.hpp"
+#include "motiongan/io/read_number.hpp"
 
 namespace motiongan {
 
@@ -71,7 +72,7 @@ inline std::vector<double> csv_numbers(std::string_view line, std::size_t column
   std::vector<double> out;
   for (const std::string_view field : split_at_commas(line)) {
     double value = 0;
-    const auto [end, problem] = std::from_chars(field.data(), field.data() + field.size(), value);
+    const auto [end, problem] = io::read_number(field.data(), field.data() + field.size(), value);
     require(problem == std::errc{} && end == field.data() + field.size(), path.string(), ":", number, ": '",
             field, "' is not a number");
     out.push_back(value);
