@@ -56,6 +56,7 @@ void take_options_of(AblateArgs& args, const CLI::App& verb) {
 }
 
 int run_ablation(AblateArgs args, const CLI::App& verb) {
+  SharedRuns runs;
   require_one_source(verb);
   std::vector<const AblationVariant*> variants;
   for (const std::string& name : args.variants) variants.push_back(&ablation_variant(name));
@@ -77,10 +78,12 @@ int run_ablation(AblateArgs args, const CLI::App& verb) {
   if (!args.evaluate_only) {
     if (only_sized(context, data, variants, args.training)) return 0;
     print_saved_to(args.save, args.training.budget.save_every_minutes);
-    const bool all = train_variants(context, data, args.save, variants, args.training,
-                                    [&](const AblationVariant& variant) { return notes_of(args, variant); });
-    if (!all) return 128 + caught_signal();
+    const bool all = train_variants(
+        context, data, args.save, variants, args.training,
+        [&](const AblationVariant& variant) { return notes_of(args, variant); }, runs);
+    if (!runs.all_ended(all)) return 128 + caught_signal();
   }
+  if (!runs.is_first()) return 0;
   report_variants(context, data, args.save, variants,
                   {args.evaluation, args.data.options.clips.unit_metres / args.data.options.clips.scale,
                    args.evaluate_only && !args.variants.empty()});
@@ -98,7 +101,8 @@ void add_training_options(CLI::App& verb, AblationTraining& a) {
 }
 
 const Verb ablate_attention_verb{
-    "ablate attention", [](CLI::App& ablate, Job& job) {
+    "ablate attention",
+    [](CLI::App& ablate, Job& job) {
       CLI::App* verb = ablate.add_subcommand(
           "attention",
           "Train the attention WGAN-GP, its variants without attention, blend loss or skeleton loss, and "
@@ -132,7 +136,8 @@ const Verb ablate_attention_verb{
         fill_in_procedural(*verb, args->data.procedural);
         job = [args, verb] { return run_ablation(*args, *verb); };
       });
-    }};
+    },
+    Verb::Runs::on_ranks};
 
 }  // namespace
 

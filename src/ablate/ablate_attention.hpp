@@ -4,6 +4,7 @@
 #include "motiongan/train/attention_trainer.hpp"
 #include "motiongan/train/baseline_trainer.hpp"
 #include "shared/command.hpp"
+#include "shared/ranks.hpp"
 #include "train/training_budget.hpp"
 
 namespace motiongan::command {
@@ -24,11 +25,11 @@ bool only_sized(const Context& context, const motion::ActionDataset& data,
                 const std::vector<const AblationVariant*>& variants, const AblationTraining& training);
 
 /// Trains the variants that have not used up their budget, one after the other, each in save/NAME; one that
-/// has used part of it continues. If one diverges, that is printed and it stays as it was last saved. Returns
-/// false if a signal stopped it.
+/// has used part of it continues. If one diverges, that is printed and it stays as it was last saved. Ranks
+/// train different variants. Returns false if a signal stopped it.
 bool train_variants(const Context& context, const motion::ActionDataset& data, const fs::path& save,
                     const std::vector<const AblationVariant*>& variants, const AblationTraining& training,
-                    const VariantNotes& notes);
+                    const VariantNotes& notes, SharedRuns& runs);
 
 struct AblationReport {
   EvaluationOptions evaluation;

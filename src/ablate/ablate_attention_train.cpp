@@ -19,9 +19,10 @@ bool only_sized(const Context& context, const motion::ActionDataset& data,
 
 bool train_variants(const Context& context, const motion::ActionDataset& data, const fs::path& save,
                     const std::vector<const AblationVariant*>& variants, const AblationTraining& training,
-                    const VariantNotes& notes) {
+                    const VariantNotes& notes, SharedRuns& runs) {
   catch_signals();
   for (const AblationVariant* variant : variants) {
+    if (!runs.takes_next()) continue;
     const std::string name(variant->name);
     const fs::path folder = save / name;
     if (has_had(folder, training.budget)) {

@@ -2,6 +2,7 @@
 // them with a ranker.
 #include "ablate/ablate_dvgan.hpp"
 
+#include "shared/ranks.hpp"
 #include "shared/signals.hpp"
 #include "train/ranking.hpp"
 #include "train/run_start.hpp"
@@ -89,12 +90,14 @@ bool only_sized(const Context& context, const motion::Dataset& data, const Ablat
   return args.dry_run;
 }
 
-/// Returns false if a signal stopped it.
+/// Ranks train different runs. Returns false if a signal stopped it.
 bool train_variants(const Context& context, const motion::Dataset& data, const AblateDvganArgs& all,
-                    const std::vector<DvganVariant>& variants, const std::vector<std::uint64_t>& seeds) {
+                    const std::vector<DvganVariant>& variants, const std::vector<std::uint64_t>& seeds,
+                    SharedRuns& runs) {
   // Seed by seed, so that a comparison stopped early has all variants, with fewer seeds.
   for (const std::uint64_t seed : seeds)
     for (const DvganVariant& variant : variants) {
+      if (!runs.takes_next()) continue;
       const fs::path folder = folder_of(all.save, variant, seed);
       const std::string name = variant.name() + " " + folder.filename().string();
       if (has_had(folder, all.budget)) {
@@ -143,6 +146,7 @@ std::optional<Ranker> get_ranker(const Context& context, const motion::Dataset& 
 }
 
 int run_ablation(AblateDvganArgs args, const CLI::App& verb) {
+  SharedRuns runs;
   require_one_source(verb);
   settle_budget(verb, args.budget);
   const std::vector<DvganVariant> variants = asked_variants(args.variants);
@@ -166,15 +170,20 @@ int run_ablation(AblateDvganArgs args, const CLI::App& verb) {
     print_saved_to(args.save, args.budget.save_every_minutes);
     catch_signals();
   }
-  const std::optional<Ranker> ranker = get_ranker(context, data, args);
-  const bool trained = ranker && (args.evaluate_only || train_variants(context, data, args, variants, seeds));
-  if (!trained) return 128 + caught_signal();
+  // The first rank alone measures, and needs a ranker.
+  std::optional<Ranker> ranker;
+  if (runs.is_first()) ranker = get_ranker(context, data, args);
+  const bool trained = (ranker || !runs.is_first()) &&
+                       (args.evaluate_only || train_variants(context, data, args, variants, seeds, runs));
+  if (!runs.all_ended(trained)) return 128 + caught_signal();
+  if (!runs.is_first()) return 0;
   report_dvgan_variants(context, data, *ranker, args.save, variants, seeds, args.evaluation);
   return 0;
 }
 
 const Verb ablate_dvgan_verb{
-    "ablate dvgan", [](CLI::App& ablate, Job& job) {
+    "ablate dvgan",
+    [](CLI::App& ablate, Job& job) {
       CLI::App* verb = ablate.add_subcommand("dvgan",
                                              "Train generators and critics with and without dense "
                                              "validation, input shift and final cut, all with "
@@ -235,7 +244,8 @@ const Verb ablate_dvgan_verb{
         fill_in_procedural(*verb, args->procedural);
         job = [args, verb] { return run_ablation(*args, *verb); };
       });
-    }};
+    },
+    Verb::Runs::on_ranks};
 
 }  // namespace
 

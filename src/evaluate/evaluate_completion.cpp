@@ -24,6 +24,7 @@ const std::vector<std::string>& known_models() {
 }
 
 int evaluate_completion(CompletionArgs args, const CLI::App& verb) {
+  SharedRuns runs;
   std::vector<std::string> trained;
   for (const std::string& model : args.models) {
     require(std::find(known_models().begin(), known_models().end(), model) != known_models().end(),
@@ -57,9 +58,11 @@ int evaluate_completion(CompletionArgs args, const CLI::App& verb) {
   if (!trained.empty()) print_fact("device", describe(context.device()));
   if (!args.evaluate_only && !trained.empty()) {
     if (!args.dry_run) print_fact("saved to", args.save);
-    if (!train_completion_models(context, data, args, verb)) return 128 + caught_signal();
+    const bool ended = train_completion_models(context, data, args, verb, runs);
+    if (!runs.all_ended(ended)) return 128 + caught_signal();
     if (args.dry_run) return 0;
   }
+  if (!runs.is_first()) return 0;
   report_completion(context, data, args);
   return 0;
 }
@@ -88,7 +91,8 @@ void add_model_options(CLI::App& verb, CompletionArgs& a) {
 }
 
 const Verb evaluate_completion_verb{
-    "evaluate completion", [](CLI::App& evaluate, Job& job) {
+    "evaluate completion",
+    [](CLI::App& evaluate, Job& job) {
       CLI::App* verb = evaluate.add_subcommand(
           "completion",
           "Measure the completion error against the ground truth, as in the motion-prediction papers: train\n"
@@ -124,7 +128,8 @@ const Verb evaluate_completion_verb{
       add_model_options(*verb, a);
       verb->callback(
           [&job, args, verb] { job = [args, verb] { return evaluate_completion(*args, *verb); }; });
-    }};
+    },
+    Verb::Runs::on_ranks};
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 #include "motiongan/experiments/completion_table.hpp"
 #include "motiongan/networks/dvgan_critic.hpp"
 #include "shared/command.hpp"
+#include "shared/ranks.hpp"
 #include "train/training_budget.hpp"
 
 namespace motiongan::command {
@@ -68,10 +69,10 @@ std::string listed(const std::vector<std::string>& names);
 fs::path folder_of(const CompletionArgs& args, const std::string& model);
 
 /// Trains those of args.models that have not used up their budget. If one diverges, that is printed and it
-/// stays as it was last saved. Returns false if a signal stopped it. Options that the command line of `verb`
-/// does not give are taken from existing runs.
+/// stays as it was last saved. Ranks train different models. Returns false if a signal stopped it. Options
+/// that the command line of `verb` does not give are taken from existing runs.
 bool train_completion_models(const Context& context, const CompletionData& data, const CompletionArgs& args,
-                             const CLI::App& verb);
+                             const CLI::App& verb, SharedRuns& runs);
 
 /// Throws Error if the run was trained on other files.
 void require_same_data(const CompletionData& data, const fs::path& checkpoint);

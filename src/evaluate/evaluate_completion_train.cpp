@@ -115,10 +115,10 @@ void require_same_data(const CompletionData& data, const fs::path& checkpoint) {
 }
 
 bool train_completion_models(const Context& context, const CompletionData& data, const CompletionArgs& asked,
-                             const CLI::App& verb) {
+                             const CLI::App& verb, SharedRuns& runs) {
   catch_signals();
   for (const std::string& model : asked.models) {
-    if (model == "zero") continue;
+    if (model == "zero" || (!asked.dry_run && !runs.takes_next())) continue;
     const bool dvgan = model == "dvgan";
     const fs::path folder = folder_of(asked, model), checkpoint = RunFiles{folder}.checkpoint();
     CompletionArgs args = asked;

@@ -243,7 +243,8 @@ int generate_either(GenerateArgs args, ActionGenerateArgs actions, const CLI::Ap
 }
 
 const Verb generate_verb{
-    "generate", [](CLI::App& app, Job& job) {
+    "generate",
+    [](CLI::App& app, Job& job) {
       CLI::App* verb = app.add_subcommand(
           "generate",
           "Generate motion for a text, or continue a second of motion in given classes, and write it as "
@@ -290,7 +291,8 @@ const Verb generate_verb{
       verb->callback([&job, args, actions, verb] {
         job = [args, actions, verb] { return generate_either(*args, *actions, *verb); };
       });
-    }};
+    },
+    Verb::Runs::on_ranks};
 
 }  // namespace
 

@@ -13,6 +13,7 @@
 #include "shared/motion_files.hpp"
 #include "shared/outputs.hpp"
 #include "shared/prompt.hpp"
+#include "shared/ranks.hpp"
 #include "shared/retargeting.hpp"
 #include "shared/show.hpp"
 
@@ -77,16 +78,13 @@ std::vector<std::string> captions_of(const std::vector<motion::Caption>& caption
   return out;
 }
 
-Found find(const Dvgan& model, const SearchArgs& args, const SearchCollection& collection,
-           const std::vector<std::vector<motion::Caption>>& captions,
-           std::vector<std::vector<float>> hypotheses) {
-  const SearchIndex& index = collection.index;
-  const motion::MotionFormat& format = model.format();
+Found found_in(const SearchIndex& index, const SearchRanking& ranking, const SearchOptions& options,
+               const std::vector<std::vector<motion::Caption>>& captions,
+               std::vector<std::vector<float>> hypotheses) {
+  const motion::MotionFormat& format = index.format();
   Found found;
-  const SearchOptions options{args.top, args.hop, args.windows};
   found.hop = search_hop(format, options);
   found.hypotheses = std::move(hypotheses);
-  const SearchRanking ranking = rank_clips(model.context(), index, found.hypotheses, options);
   for (const SearchClip& clip : index.clips()) clip.left_out.empty() ? ++found.clips : ++found.left_out;
   found.windows = ranking.windows;
   found.median = ranking.median;
@@ -224,10 +222,19 @@ void check_search_outputs(const SearchArgs& args, const fs::path& model) {
     check_outputs("--out", sample_files(args.out, slug(args.text), 0, args.hypotheses, args.format), inputs);
 }
 
+void report_index(const SearchCollection& collection) {
+  for (const std::string& warning : collection.warnings) fmt::print(stderr, "motiongan: {}\n", warning);
+  if (collection.written)
+    fmt::print(stderr, "index {}: {} read, {} kept, {} removed\n", collection.file.string(),
+               counted(collection.read, "file"), collection.kept, collection.removed);
+}
+
 int search(const SearchArgs& args) {
   check_text(args.text);
   check_samples(0, args.hypotheses);
   const fs::path file = model_file(args.model);
+  const std::shared_ptr<Communicator> ranks = join_ranks();
+  const bool first = ranks == nullptr || ranks->rank() == 0;
   check_search_outputs(args, file);
   require(!holds_model<ActionGan>(io::SafeTensors::read(file)), file.string(),
           " generates motion for classes; a search needs a text-conditioned model (motiongan train dvgan)");
@@ -239,7 +246,8 @@ int search(const SearchArgs& args) {
   const Dvgan model = Dvgan::load(context, file);
   const motion::MotionFormat& format = model.format();
   check_words(format, args.text, args.strict);
-  // The index is read while the device generates the hypotheses.
+  // The index is read while the device generates the hypotheses. The first rank brings it up to date for all.
+  if (!first) ranks->wait_for_all();
   auto opened = std::async(std::launch::async, [&] {
     return open_search_collection(args.collection, format, args.index, args.clips);
   });
@@ -248,12 +256,13 @@ int search(const SearchArgs& args) {
   options.seed = args.seed;
   std::vector<std::vector<float>> hypotheses = model.generate_poses(args.text, options);
   const SearchCollection collection = opened.get();
-  for (const std::string& warning : collection.warnings) fmt::print(stderr, "motiongan: {}\n", warning);
-  if (collection.written)
-    fmt::print(stderr, "index {}: {} read, {} kept, {} removed\n", collection.file.string(),
-               counted(collection.read, "file"), collection.kept, collection.removed);
+  if (first) report_index(collection);
+  if (first && ranks != nullptr) ranks->wait_for_all();
+  const SearchOptions compared{args.top, args.hop, args.windows};
+  const SearchRanking ranking = rank_clips(context, collection.index, hypotheses, compared, ranks.get());
+  if (!first) return 0;
   const auto captions = read_captions(collection.index, args);
-  const Found found = find(model, args, collection, captions, std::move(hypotheses));
+  const Found found = found_in(collection.index, ranking, compared, captions, std::move(hypotheses));
   if (args.json != "-") print_results(found, args, format);
   if (!args.json.empty()) {
     // Replaces what is not UTF-8 in a path, so that the rest can still be written.
@@ -281,7 +290,8 @@ int search(const SearchArgs& args) {
 }
 
 const Verb search_verb{
-    "search", [](CLI::App& app, Job& job) {
+    "search",
+    [](CLI::App& app, Job& job) {
       CLI::App* verb = app.add_subcommand(
           "search",
           "Find the clips of a collection whose motion matches a text.\n"
@@ -326,7 +336,8 @@ const Verb search_verb{
       add_format_option(*verb, args->format);
       add_skeleton_options(*verb, args->retargeting);
       verb->callback([&job, args] { job = [args] { return search(*args); }; });
-    }};
+    },
+    Verb::Runs::on_ranks};
 
 }  // namespace
 

@@ -29,16 +29,25 @@ using Job = std::function<int()>;
 
 /// A verb of the command, such as "info" or "train dvgan", defined once in its own file:
 ///     const Verb verb{"info", [](CLI::App& app, Job& job) { ... }};
-/// main() calls `add` with the app, or with the group that the name begins with.
+/// CommandLine calls `add` with the app, or with the group that the name begins with.
 struct Verb {
   using Add = void (*)(CLI::App& parent, Job& job);
-  Verb(const char* name, Add add) { all().emplace_back(name, add); }
+  /// Whether the processes of an MPI job share the work, or one process does it.
+  enum class Runs { alone, on_ranks };
+  Verb(std::string its_name, Add how, Runs where = Runs::alone)
+      : name(std::move(its_name)), add(how), runs(where) {
+    all().push_back(*this);
+  }
 
   /// All verbs, in no particular order.
-  static std::vector<std::pair<std::string, Add>>& all() {
-    static std::vector<std::pair<std::string, Add>> verbs;
+  static std::vector<Verb>& all() {
+    static std::vector<Verb> verbs;
     return verbs;
   }
+
+  std::string name;
+  Add add;
+  Runs runs;
 };
 
 /// How this command was invoked, for suggested command lines: "motiongan", or the path to it.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "motiongan/core/os.hpp"
+#include "shared/ranks.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -56,11 +57,14 @@ CommandLine::CommandLine(std::ostream& out, std::ostream& err) : out_(out), err_
     groups_[name] = app_.add_subcommand(name, does);
     groups_[name]->require_subcommand(1);
   }
-  std::sort(Verb::all().begin(), Verb::all().end());
-  for (const auto& [name, add] : Verb::all()) {
-    const std::size_t space = name.find(' ');
-    add(space == std::string::npos ? app_ : *groups_.at(name.substr(0, space)), job_);
-  }
+  std::sort(Verb::all().begin(), Verb::all().end(),
+            [](const Verb& a, const Verb& b) { return a.name < b.name; });
+  for (const Verb& verb : Verb::all()) verb.add(parent_of(verb), job_);
+}
+
+CLI::App& CommandLine::parent_of(const Verb& verb) {
+  const std::size_t space = verb.name.find(' ');
+  return space == std::string::npos ? app_ : *groups_.at(verb.name.substr(0, space));
 }
 
 std::optional<int> CommandLine::parse(std::vector<std::string> arguments) {
@@ -72,6 +76,11 @@ std::optional<int> CommandLine::parse(std::vector<std::string> arguments) {
   } catch (const CLI::ParseError& error) {
     return app_.exit(error, out_, err_);
   }
+  for (const Verb& verb : Verb::all())
+    require(verb.runs == Verb::Runs::on_ranks || launched_ranks() == 1 ||
+                !parent_of(verb).got_subcommand(verb.name.substr(verb.name.find(' ') + 1)),
+            "motiongan ", verb.name, " works in one process, and ", launched_ranks(),
+            " were started; start it without mpirun");
   return std::nullopt;
 }
 

@@ -17,13 +17,17 @@ class CommandLine {
   CommandLine& operator=(const CommandLine&) = delete;
 
   /// Parses the arguments, without the program's name. Returns the exit status if there is nothing to run:
-  /// help was asked for, or an option is wrong. Throws Error where a verb refuses an option.
+  /// help was asked for, or an option is wrong. Throws Error where a verb refuses an option, and where
+  /// several processes were started for a verb of one.
   std::optional<int> parse(std::vector<std::string> arguments);
 
   /// Runs the verb; returns the exit status.
   int run() { return job_(); }
 
  private:
+  /// The app, or the group that a verb's name begins with.
+  CLI::App& parent_of(const Verb& verb);
+
   std::ostream &out_, &err_;
   CLI::App app_;
   Job job_;

@@ -9,16 +9,12 @@
 #endif
 
 namespace motiongan::command {
-namespace {
 
-/// The number of ranks that a launcher says there are; 1 if none does.
 int launched_ranks() {
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE"})
     if (const char* const text = std::getenv(name)) return std::atoi(text);
   return 1;
 }
-
-}  // namespace
 
 std::shared_ptr<Communicator> join_ranks() {
   if (launched_ranks() < 2) return {};
@@ -38,6 +34,14 @@ Share share_of(std::size_t count, const Communicator* ranks) {
   const std::size_t first = count * ranks->rank() / ranks->size(),
                     end = count * (ranks->rank() + 1) / ranks->size();
   return {first, end - first};
+}
+
+bool SharedRuns::all_ended(bool ended) const {
+  if (ranks_ == nullptr) return ended;
+  ranks_->wait_for_all();
+  float stopped = ended ? 0 : 1;
+  ranks_->all_reduce({&stopped, 1});
+  return stopped == 0;
 }
 
 void need_one_rank(const Communicator* ranks, const CLI::App& verb,

@@ -131,7 +131,8 @@ int train_attention(AttentionArgs args, const CLI::App& verb) {
 }
 
 const Verb train_attention_verb{
-    "train attention", [](CLI::App& train, Job& job) {
+    "train attention",
+    [](CLI::App& train, Job& job) {
       CLI::App* verb = train.add_subcommand(
           "attention",
           "Train the attention WGAN-GP on labelled clips: it continues a second of motion in a given class.\n"
@@ -149,7 +150,8 @@ const Verb train_attention_verb{
         fill_in_procedural(*verb, args->data.procedural);
         job = [args, verb] { return train_attention(*args, *verb); };
       });
-    }};
+    },
+    Verb::Runs::on_ranks};
 
 }  // namespace
 }  // namespace motiongan::command

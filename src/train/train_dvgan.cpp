@@ -57,7 +57,8 @@ int train_dvgan(TrainDvganArgs args, const CLI::App& verb) {
 }
 
 const Verb train_dvgan_verb{
-    "train dvgan", [](CLI::App& train, Job& job) {
+    "train dvgan",
+    [](CLI::App& train, Job& job) {
       CLI::App* verb =
           train.add_subcommand("dvgan",
                                "Train a DVGAN (text to motion) on a folder of BVH clips with captions.\n"
@@ -76,7 +77,8 @@ const Verb train_dvgan_verb{
         fill_in_procedural(*verb, args->procedural);
         job = [args, verb] { return train_dvgan(*args, *verb); };
       });
-    }};
+    },
+    Verb::Runs::on_ranks};
 
 }  // namespace
 }  // namespace motiongan::command

@@ -52,7 +52,8 @@ int train_ranker(TrainRankerArgs args, const CLI::App& verb) {
 }
 
 const Verb train_ranker_verb{
-    "train ranker", [](CLI::App& train, Job& job) {
+    "train ranker",
+    [](CLI::App& train, Job& job) {
       CLI::App* verb = train.add_subcommand(
           "ranker",
           "Train a ranker, which scores how well a description fits a motion and is used to evaluate "
@@ -69,7 +70,8 @@ const Verb train_ranker_verb{
         fill_in_procedural(*verb, args->procedural);
         job = [args, verb] { return train_ranker(*args, *verb); };
       });
-    }};
+    },
+    Verb::Runs::on_ranks};
 
 }  // namespace
 }  // namespace motiongan::command

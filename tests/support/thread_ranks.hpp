@@ -50,6 +50,7 @@ class ThreadRank : public Communicator {
     std::copy(other.begin(), other.end(), theirs.begin());
     meeting_->barrier.arrive_and_wait();
   }
+  void wait_for_all() override { meeting_->barrier.arrive_and_wait(); }
 
  private:
   std::shared_ptr<Meeting> meeting_;

@@ -32,6 +32,8 @@ class Communicator {
   virtual void broadcast(std::span<std::byte> bytes) = 0;
   /// Sends values to another rank, which does the same, and receives its values.
   virtual void exchange(std::size_t partner, std::span<const float> mine, std::span<float> theirs) = 0;
+  /// Returns when all ranks have come here, however long that takes.
+  virtual void wait_for_all() = 0;
 };
 
 /// The sums over all ranks, added as a binary tree whose leaves are the ranks in order. If the values of a

@@ -66,6 +66,16 @@ class MpiRanks : public Communicator {
     });
   }
 
+  /// mpirun ends the job if a rank fails meanwhile.
+  void wait_for_all() override {
+    MPI_Request request{};
+    check(MPI_Ibarrier(MPI_COMM_WORLD, &request), "wait");
+    for (int done = 0;; std::this_thread::sleep_for(std::chrono::milliseconds(10))) {
+      check(MPI_Test(&request, &done, MPI_STATUS_IGNORE), "wait");
+      if (done != 0) return;
+    }
+  }
+
  private:
   /// MPI counts in int.
   template <class Work>

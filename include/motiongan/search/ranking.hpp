@@ -5,6 +5,7 @@
 #include <tuple>
 #include <vector>
 
+#include "motiongan/distributed/communicator.hpp"
 #include "motiongan/search/index.hpp"
 #include "motiongan/search/windows.hpp"
 
@@ -105,16 +106,45 @@ inline SearchRanking rank(const SearchIndex& index, const std::vector<SearchWind
   return out;
 }
 
+namespace search_detail {
+
+/// The distances of all windows, of which every rank computes a share: equal bits on equal devices, however
+/// many they are.
+inline WindowDistances distances(const Context& context, const SearchIndex& index,
+                                 const std::vector<SearchWindow>& windows,
+                                 const std::vector<std::vector<float>>& hypotheses, Communicator* ranks) {
+  const std::size_t rank = ranks ? ranks->rank() : 0, size = ranks ? ranks->size() : 1,
+                    first = windows.size() * rank / size, end = windows.size() * (rank + 1) / size;
+  const std::vector<SearchWindow> mine(windows.begin() + static_cast<std::ptrdiff_t>(first),
+                                       windows.begin() + static_cast<std::ptrdiff_t>(end));
+  const SearchWindows compared(context, index.format(), index.frames(), index.starts(mine),
+                               {.keep_bytes = 0});
+  WindowDistances found = compared(hypotheses);
+  if (ranks == nullptr) return found;
+  // Sums with zeros are exact, and so are shifts as floats.
+  const std::size_t all = windows.size() * hypotheses.size(), at = first * hypotheses.size();
+  std::vector<float> values(2 * all, 0);
+  std::copy(found.distance.begin(), found.distance.end(), values.begin() + static_cast<std::ptrdiff_t>(at));
+  std::copy(found.shift.begin(), found.shift.end(), values.begin() + static_cast<std::ptrdiff_t>(all + at));
+  ranks->all_reduce(values);
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(all);
+  found.distance.assign(values.begin(), middle);
+  found.shift.assign(middle, values.end());
+  return found;
+}
+
+}  // namespace search_detail
+
 /// Searches an index for the clips nearest to the hypotheses, normalised poses [N, dof] each, as made by
-/// Dvgan::generate_poses(). Distances are computed on the context's device. Throws Error without hypotheses.
+/// Dvgan::generate_poses(). Distances are computed on the context's device; with `ranks`, which all call this
+/// with the same index and hypotheses, each compares a share of the windows. Throws Error without hypotheses.
 inline SearchRanking rank_clips(const Context& context, const SearchIndex& index,
                                 const std::vector<std::vector<float>>& hypotheses,
-                                const SearchOptions& options = {}) {
+                                const SearchOptions& options = {}, Communicator* ranks = nullptr) {
   const std::vector<SearchWindow> windows = index.windows(search_hop(index.format(), options));
-  const SearchWindows compared(context, index.format(), index.frames(), index.starts(windows),
-                               {.keep_bytes = 0});
   SearchRanking out =
-      rank(index, windows, compared(hypotheses), hypotheses, options.top, options.every_window);
+      rank(index, windows, search_detail::distances(context, index, windows, hypotheses, ranks), hypotheses,
+           options.top, options.every_window);
   out.windows = windows.size();
   return out;
 }
