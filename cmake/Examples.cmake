@@ -10,7 +10,7 @@ foreach(source IN LISTS sources)
     set(folder "${PROJECT_BINARY_DIR}/examples/run/${name}")
     file(MAKE_DIRECTORY "${folder}")
     add_test(NAME ${target} COMMAND ${target} WORKING_DIRECTORY "${folder}")
-    set_tests_properties(${target} PROPERTIES LABELS examples TIMEOUT 600)
+    set_tests_properties(${target} PROPERTIES LABELS examples)
   endif()
 endforeach()
 
@@ -25,7 +25,7 @@ if(TARGET motiongan-c)
     set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/examples")
     if(TARGET c_models)
       add_test(NAME ${target} COMMAND ${target} ${arguments})
-      set_tests_properties(${target} PROPERTIES LABELS examples TIMEOUT 600 FIXTURES_REQUIRED c_models)
+      set_tests_properties(${target} PROPERTIES LABELS examples FIXTURES_REQUIRED c_models)
     endif()
   endforeach()
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/examples/python/*.py")
@@ -36,7 +36,7 @@ if(TARGET motiongan-c)
       add_test(NAME example_python_${name} COMMAND ${CMAKE_COMMAND} "-DSCRIPT=${source}"
         "-DLIBRARY=$<TARGET_FILE:motiongan-c>" "-DARGUMENTS=${arguments}"
         -P "${PROJECT_SOURCE_DIR}/cmake/RunPython.cmake")
-      set_tests_properties(example_python_${name} PROPERTIES LABELS examples TIMEOUT 600
+      set_tests_properties(example_python_${name} PROPERTIES LABELS examples
         FIXTURES_REQUIRED c_models SKIP_REGULAR_EXPRESSION "skipped:")
     endif()
   endforeach()

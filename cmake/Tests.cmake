@@ -9,10 +9,10 @@ endif()
 add_library(test_main OBJECT "${PROJECT_SOURCE_DIR}/tests/main.cpp")
 target_link_libraries(test_main PUBLIC doctest::doctest PRIVATE motiongan)
 
-# own_test(<name> <label> <command>...): registers a test with the label and the common time limit.
+# own_test(<name> <label> <command>...): registers a test with the label.
 function(own_test name label)
   add_test(NAME ${name} COMMAND ${ARGN})
-  set_tests_properties(${name} PROPERTIES LABELS ${label} TIMEOUT 600)
+  set_tests_properties(${name} PROPERTIES LABELS ${label})
 endfunction()
 
 file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/*_test.cpp")
