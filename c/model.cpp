@@ -100,7 +100,7 @@ void check_index(std::size_t index, std::size_t count, const char* what) {
 using namespace motiongan;
 using namespace motiongan::c;
 
-const char* motiongan_version(void) { return MOTIONGAN_VERSION; }
+const char* motiongan_version(void) { return MOTIONGAN_VERSION_STRING; }
 
 const char* motiongan_status_name(motiongan_status status) {
   static constexpr const char* names[] = {"MOTIONGAN_OK",

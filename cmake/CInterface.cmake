@@ -6,8 +6,8 @@ add_library(motiongan::c ALIAS motiongan-c)
 target_link_libraries(motiongan-c PRIVATE motiongan_own)
 target_include_directories(motiongan-c INTERFACE
   "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>"
+  "$<BUILD_INTERFACE:${motiongan_generated}>"
   "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>")
-target_compile_definitions(motiongan-c PRIVATE MOTIONGAN_VERSION="${PROJECT_VERSION}")
 # Before 1.0 a minor version may change the interface, as the CMake package says too.
 set_target_properties(motiongan-c PROPERTIES
   EXPORT_NAME c OUTPUT_NAME motiongan

@@ -40,6 +40,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "motiongan_version.h" /* MOTIONGAN_VERSION, MOTIONGAN_MAKE_VERSION: of the headers */
+
 #if defined(__GNUC__)
 #define MOTIONGAN_API __attribute__((visibility("default")))
 #else
@@ -85,7 +87,7 @@ enum {
 
 /* ---- the library */
 
-/** "0.1.0" */
+/** MOTIONGAN_VERSION_STRING of the library that runs: "0.1.0". Its headers may have had another. */
 MOTIONGAN_API const char* motiongan_version(void);
 
 /** "MOTIONGAN_OK" and so on; "unknown status" for other numbers. */

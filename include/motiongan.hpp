@@ -13,6 +13,8 @@ namespace paper {}
 namespace view {}
 }  // namespace motiongan
 
+#include "motiongan/version.hpp"
+//
 #include "motiongan/core/context.hpp"
 #include "motiongan/core/device.hpp"
 #include "motiongan/core/error.hpp"

@@ -5,6 +5,8 @@
 #include "motiongan/core/os.hpp"
 #include "shared/ranks.hpp"
 
+#include "motiongan/version.hpp"
+
 namespace motiongan::command {
 namespace {
 
@@ -37,7 +39,7 @@ CLI::ParseError explained(const CLI::ConversionError& error) {
 
 CommandLine::CommandLine(std::ostream& out, std::ostream& err) : out_(out), err_(err), app_(description) {
   app_.name("motiongan");
-  app_.set_version_flag("--version", "motiongan " MOTIONGAN_VERSION);
+  app_.set_version_flag("--version", "motiongan " MOTIONGAN_VERSION_STRING);
   app_.require_subcommand(1);
   app_.fallthrough();
   app_.formatter(std::make_shared<Help>());
