@@ -31,7 +31,9 @@ add_custom_command(OUTPUT "${sbom}"
     "-DLIBRARY_ARCHITECTURE=${CMAKE_LIBRARY_ARCHITECTURE}" -P "${PROJECT_SOURCE_DIR}/cmake/Sbom.cmake"
   DEPENDS ${sbom_targets} cmake/Sbom.cmake COMMENT "Writing motiongan.spdx.json" VERBATIM)
 add_custom_target(motiongan-sbom ALL DEPENDS "${sbom}")
-install(FILES "${PROJECT_BINARY_DIR}/copyright" "${sbom}" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT command)
+if(NOT MOTIONGAN_PACKAGE)   # else Packages.cmake installs them with each package
+  install(FILES "${PROJECT_BINARY_DIR}/copyright" "${sbom}" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT command)
+endif()
 if(COMMAND own_test AND sbom_targets)
   own_test(packages_sbom packages ${CMAKE_COMMAND} "-DSBOM=${sbom}" "-DVERSION=${PROJECT_VERSION}"
     -P "${PROJECT_SOURCE_DIR}/tests/packages/sbom.cmake")
