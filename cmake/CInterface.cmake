@@ -15,5 +15,8 @@ set_target_properties(motiongan-c PROPERTIES
   CXX_EXTENSIONS OFF CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
   UNITY_BUILD ${MOTIONGAN_UNITY} UNITY_BUILD_BATCH_SIZE 0
   LINK_DEPENDS "${exports}")
+# What a Python needs to find the module, and the module the library.
+set(motiongan_python_environment
+  "PYTHONPATH=${PROJECT_SOURCE_DIR}/packaging/python" "MOTIONGAN_LIBRARY=$<TARGET_FILE:motiongan-c>" PYTHONDONTWRITEBYTECODE=1)
 # nodelete: OpenCL drivers keep threads, and calls at the end of the process, that must find the library.
 target_link_options(motiongan-c PRIVATE "LINKER:--version-script=${exports}" "LINKER:-z,nodelete")

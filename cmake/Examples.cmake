@@ -14,7 +14,7 @@ foreach(source IN LISTS sources)
   endif()
 endforeach()
 
-# Every examples/c/*.c likewise, and examples/python/*.py with the shared library; both with the models of the tests.
+# Every examples/c/*.c likewise, and examples/python/*.py with the Python module; both with the models of the tests.
 if(TARGET motiongan-c)
   set(arguments "${motiongan_c_models}/rnn.safetensors" run)
   file(GLOB sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/examples/c/*.c")
@@ -33,10 +33,10 @@ if(TARGET motiongan-c)
     get_filename_component(name "${source}" NAME_WE)
     # A library with sanitizers cannot be loaded into a Python without them.
     if(TARGET c_models AND NOT CMAKE_CXX_FLAGS MATCHES "-fsanitize")
-      add_test(NAME example_python_${name} COMMAND ${CMAKE_COMMAND} "-DSCRIPT=${source}"
-        "-DLIBRARY=$<TARGET_FILE:motiongan-c>" "-DARGUMENTS=${arguments}"
-        -P "${PROJECT_SOURCE_DIR}/cmake/RunPython.cmake")
+      add_test(NAME example_python_${name} COMMAND ${CMAKE_COMMAND} "-DSCRIPT=${source}" -DNEEDS=numpy
+        "-DARGUMENTS=${arguments}" -P "${PROJECT_SOURCE_DIR}/cmake/RunPython.cmake")
       set_tests_properties(example_python_${name} PROPERTIES LABELS examples
+        ENVIRONMENT "${motiongan_python_environment}"
         FIXTURES_REQUIRED c_models SKIP_REGULAR_EXPRESSION "skipped:")
     endif()
   endforeach()

@@ -1,13 +1,10 @@
-# Runs SCRIPT LIBRARY ARGUMENTS by a python3 with numpy, or says that there is none.
-find_program(PYTHON python3)
-if(PYTHON)
-  execute_process(COMMAND "${PYTHON}" -c "import numpy" RESULT_VARIABLE missing ERROR_QUIET)
-endif()
-if(NOT PYTHON OR missing)
-  message("skipped: there is no python3 with numpy; on Debian: apt-get install python3-numpy")
+# Runs SCRIPT ARGUMENTS by a python3 with the modules NEEDS, or says that there is none.
+include("${CMAKE_CURRENT_LIST_DIR}/PythonWith.cmake")
+python_with(PYTHON ${NEEDS})
+if(NOT PYTHON)
   return()
 endif()
-execute_process(COMMAND "${PYTHON}" "${SCRIPT}" "${LIBRARY}" ${ARGUMENTS} RESULT_VARIABLE result)
+execute_process(COMMAND "${PYTHON}" "${SCRIPT}" ${ARGUMENTS} RESULT_VARIABLE result)
 if(NOT result EQUAL 0)
   message(FATAL_ERROR "${SCRIPT} failed (${result})")
 endif()
