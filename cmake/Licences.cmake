@@ -34,6 +34,10 @@ add_custom_target(motiongan-sbom ALL DEPENDS "${sbom}")
 if(NOT MOTIONGAN_PACKAGE)   # else Packages.cmake installs them with each package
   install(FILES "${PROJECT_BINARY_DIR}/copyright" "${sbom}" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT command)
 endif()
+if(COMMAND own_test)
+  own_test(packages_versions packages ${CMAKE_COMMAND} "-DVERSION=${PROJECT_VERSION}"
+    -P "${PROJECT_SOURCE_DIR}/tests/packages/versions.cmake")
+endif()
 if(COMMAND own_test AND sbom_targets)
   own_test(packages_sbom packages ${CMAKE_COMMAND} "-DSBOM=${sbom}" "-DVERSION=${PROJECT_VERSION}"
     -P "${PROJECT_SOURCE_DIR}/tests/packages/sbom.cmake")
