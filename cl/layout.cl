@@ -27,12 +27,19 @@ kernel void copy_parts(global const real* x0, global const real* x1, global cons
                        const Parts parts, uint out_stride, uint outer) {
   const uint o = get_global_id(0) / parts.items, item = get_global_id(0) % parts.items;
   if (o >= outer) return;
-  global const real* const x[MOST_PARTS] = {x0, x1, x2, x3, x4, x5, x6, x7};
-  uint p = 0;
-  while (p + 1 < parts.count && item >= parts.item[p + 1]) ++p;
-  const uint r = (item - parts.item[p]) * VW, left = parts.run[p] - r;
-  store_some(load_some(x[p] + parts.x[p] + o * parts.run[p] + r, left),
-             out + out0 + o * out_stride + parts.at[p] + r, left);
+  global const real* x = x0;
+  uint from = parts.x[0], to = parts.at[0], run = parts.run[0], first = parts.item[0];
+  // Constant indices: Mesa's llvmpipe crashes where a struct that is an argument is indexed by a variable.
+#define TAKE_PART(p)                               \
+  if (p < parts.count && item >= parts.item[p]) {  \
+    x = x##p, from = parts.x[p], to = parts.at[p]; \
+    run = parts.run[p], first = parts.item[p];     \
+  }
+  TAKE_PART(1)
+  TAKE_PART(2) TAKE_PART(3) TAKE_PART(4) TAKE_PART(5) TAKE_PART(6) TAKE_PART(7)
+      const uint r = (item - first) * VW,
+                 left = run - r;
+  store_some(load_some(x + from + o * run + r, left), out + out0 + o * out_stride + to + r, left);
 }
 
 /// out[o, r] = x[o, r - before] if 0 <= r - before < run, else 0; r < out_run.

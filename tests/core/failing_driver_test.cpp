@@ -205,6 +205,7 @@ TEST_CASE("a context whose last work fails is destroyed without an exception") {
 
 TEST_CASE("a driver that refuses the option of the language version builds without it") {
   const Faulty faulty;
+  const Setting compiled_anew("MOTIONGAN_CACHE_DIR", "");
   const Context context;
   const Tensor x(context, {4});
   const auto fill = [&] {
