@@ -2,6 +2,7 @@
 // them was killed.
 #include <doctest/doctest.h>
 
+#include "../support/expmap_files.hpp"
 #include "command.hpp"
 
 namespace {
@@ -93,6 +94,66 @@ TEST_CASE("mpirun: generate shares the motions, and writes the files that one pr
   const Said page = shell(on_ranks(2, "generate text --text walk --html page.html"));
   CHECK(page.status != 0);
   CHECK_MESSAGE(page.has("--html needs all motions in one process"), page.text);
+}
+
+TEST_CASE("mpirun: ranks train different variants; the first waits, and reports as one process does") {
+  if (!has_mpi()) return;
+  const TestFolder folder;
+  const std::string attention =
+      "ablate attention --procedural 36 --classes walk,run --frames 8 --rate 8 --hidden 8 --batch 4 "
+      "--critic-steps 1 --future 20 --windows 6 --variants full,lstm,no_attention --iterations 2 --save ";
+  const std::string dvgan =
+      "ablate dvgan clips --variants cnn-cnn-final,rnn-cnn-dense --seeds 1 --frames 16 --hidden 8 --batch 4 "
+      "--critic-steps 1 "
+      "--ranker-hidden 8 --ranker-iterations 2 --samples 2 --descriptions 3 --iterations 1 --save ";
+  motiongan::testing::write_small_h36m("h36m");
+  const std::string completion =
+      "evaluate completion h36m --models zero,lstm,seq2seq,dvgan --hidden 8 --batch 2 --dvgan-hidden 8 "
+      "--dvgan-batch 2 --dvgan-frames 8 --critic-steps 1 --samples 3 --iterations 2 --dvgan-iterations 1 "
+      "--save ";
+  REQUIRE(call("synth clips --clips 8 --seconds 5").status == 0);
+  for (const std::string& what : {attention, dvgan, completion}) {
+    CAPTURE(what);
+    for (const char* save : {"one", "shared"}) fs::remove_all(save);
+    const Said alone = call(what + "one"), shared = shell(on_ranks(2, what + "shared"));
+    CHECK_MESSAGE(alone.status == 0, alone.text);
+    CHECK_MESSAGE(shared.status == 0, shared.text);
+    std::size_t models = 0;
+    for (const auto& entry : fs::recursive_directory_iterator("one")) {
+      const fs::path other = "shared" / entry.path().lexically_relative("one");
+      CHECK_MESSAGE(fs::exists(other), other.string());
+      if (entry.path().extension() != ".safetensors" || entry.path().filename() == "checkpoint.safetensors")
+        continue;
+      CHECK_MESSAGE(bytes_of(entry.path()) == bytes_of(other), other.string());
+      ++models;
+    }
+    CHECK(models >= 3);
+    CHECK(bytes_of("one/table.csv") == bytes_of("shared/table.csv"));
+  }
+}
+
+TEST_CASE("mpirun: the ranks of a search compare a part of the collection each") {
+  if (!has_mpi()) return;
+  const TestFolder folder;
+  REQUIRE(call("synth clips --clips 6 --seconds 6").status == 0);
+  REQUIRE(call(training + "--save run --iterations 1").status == 0);
+  for (const char* what : {"", " --windows --hop 2 --top 30"}) {
+    const std::string search = std::string("search --model run --text walk --collection clips") + what;
+    fs::remove_all("clips/.motiongan-search");
+    const Said shared = shell(on_ranks(3, search + " --json three.json"));
+    CHECK_MESSAGE(shared.status == 0, shared.text);
+    CHECK(shared.has("6 files read"));
+    REQUIRE(call(search + " --json one.json").status == 0);
+    CHECK(bytes_of("one.json") == bytes_of("three.json"));
+  }
+}
+
+TEST_CASE("mpirun: a verb of one process is refused") {
+  if (!has_mpi()) return;
+  const TestFolder folder;
+  const Said said = shell(on_ranks(2, "devices"));
+  CHECK(said.status != 0);
+  CHECK_MESSAGE(said.has("motiongan devices works in one process, and 2 were started"), said.text);
 }
 
 TEST_CASE("mpirun: a rank is killed; the job ends, and goes on with another number of ranks") {

@@ -5,11 +5,11 @@
 #include <random>
 
 #include "../support/precision.hpp"
-
+#include "../support/thread_ranks.hpp"
 #include "motiongan/data/dataset.hpp"
 #include "motiongan/data/dataset_build.hpp"
 #include "motiongan/procedural/procedural.hpp"
-#include "motiongan/search/windows.hpp"
+#include "motiongan/search/ranking.hpp"
 
 using namespace motiongan;
 using motion::RootRotation;
@@ -183,6 +183,33 @@ TEST_CASE("equal queries give equal bits, whatever the chunk and whether spectra
   const auto others = random_hypotheses(format, 3, 50);
   CHECK(one(others).distance.size() == 3 * starts.size());
   CHECK(one(hypotheses).distance == a.distance);
+}
+
+TEST_CASE("ranks that compare a share of the windows each find what one finds") {
+  const motion::MotionFormat format = format_of(12, RootRotation::heading, true);
+  SearchIndex index(format);
+  for (std::size_t i = 0; i < 3; ++i) {
+    SearchClip clip;
+    clip.path = concat("clip", i, ".bvh");
+    clip.frames = 40 + 13 * i;
+    index.add(clip, normals(clip.frames * format.dof(), 3 + static_cast<unsigned>(i)));
+  }
+  const auto hypotheses = random_hypotheses(format, 5, 1);
+  const SearchOptions every{.top = 1000, .hop = 5, .every_window = true};
+  const SearchRanking alone = rank_clips(Context(), index, hypotheses, every);
+  REQUIRE(alone.hits.size() == alone.windows);
+  REQUIRE(alone.windows > 10);
+  for (const std::size_t ranks : {2, 3, 64})  // 64: more than windows
+    testing::on_ranks(ranks, [&](const std::shared_ptr<Communicator>& own) {
+      const SearchRanking shared = rank_clips(Context(), index, hypotheses, every, own.get());
+      bool same = shared.median == alone.median && shared.hits.size() == alone.hits.size();
+      for (std::size_t i = 0; same && i < alone.hits.size(); ++i)
+        same = shared.hits[i].window.clip == alone.hits[i].window.clip &&
+               shared.hits[i].window.frame == alone.hits[i].window.frame &&
+               shared.hits[i].nearest[1].shift == alone.hits[i].nearest[1].shift &&
+               shared.hits[i].nearest[1].distance == alone.hits[i].nearest[1].distance;
+      require(same, "rank ", own->rank(), " of ", ranks, " found something else");
+    });
 }
 
 TEST_CASE("invalid searches are rejected") {
