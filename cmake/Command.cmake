@@ -55,7 +55,10 @@ elseif(sources)
     set(httplib_options MOTIONGAN_HTTPLIB)
     if(HTTPLIB_LIBRARY)
       list(APPEND httplib_options CPPHTTPLIB_OPENSSL_SUPPORT CPPHTTPLIB_ZLIB_SUPPORT CPPHTTPLIB_BROTLI_SUPPORT)
-      target_link_libraries(motiongan-verbs PUBLIC "${HTTPLIB_LIBRARY}")
+      # What the header itself calls with these options.
+      find_package(OpenSSL QUIET)
+      target_link_libraries(motiongan-verbs PUBLIC "${HTTPLIB_LIBRARY}" $<TARGET_NAME_IF_EXISTS:OpenSSL::SSL>
+        $<TARGET_NAME_IF_EXISTS:OpenSSL::Crypto>)
     endif()
     find_package(Threads REQUIRED)
     target_link_libraries(motiongan-verbs PUBLIC Threads::Threads)
