@@ -50,7 +50,7 @@ inline std::ostream& operator<<(std::ostream& out, const GemmCall& g) {
 
 namespace detail {
 
-// Flags of the kernels in cl/gemm_tiles.cl and cl/gemm_packed.cl.
+// Flags of the kernels, cl/gemm_epilogue.cl.
 constexpr cl_uint gemm_accumulate = 1, gemm_bias = 2, gemm_residual = 4, gemm_relu = 8, gemm_rectify = 16;
 
 inline cl_uint gemm_flags(const GemmCall& g) {

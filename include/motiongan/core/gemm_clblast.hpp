@@ -57,7 +57,7 @@ inline void gemm_clblast(const Context& context, const GemmCall& g) {
   grid.dimensions = 2;
   grid.global[1] = g.batch;
   const auto present = [&](const Tensor& t) -> const Tensor& { return t.empty() ? g.c : t; };
-  context.launch("gemm", "gemm_finish", grid, g.c.buffer(), c_first, present(g.bias),
+  context.launch("gemm_finish", "gemm_finish", grid, g.c.buffer(), c_first, present(g.bias),
                  present(g.residual).buffer(), present(g.residual).offset() + g.residual_offset, g.m, g.n,
                  g.c_ld, g.residual_ld, g.c_batch_stride, flags);
 }

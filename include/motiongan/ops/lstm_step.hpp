@@ -1,5 +1,5 @@
 // One step of an LSTM layer, for weights that are used in many steps: matrix product and cell, in one kernel
-// on the native gemm() backend.
+// where weights are packed.
 #pragma once
 #include "motiongan/core/gemm.hpp"
 #include "motiongan/ops/reduce.hpp"
@@ -37,13 +37,13 @@ struct LstmStep {
 };
 
 /// One LSTM layer: gates = rows W^T + extra (order i, f, g, o), then c and h. The constructor packs W
-/// [4k, in], on request in 16 bits (see GemmCall); later changes of W have no effect on the native backend.
+/// [4k, in], on request in 16 bits (see GemmCall); later changes of W have no effect where weights are packed.
 class LstmStepper {
  public:
   LstmStepper() = default;
   LstmStepper(const Context& context, const Tensor& weight, bool in_16_bits = false)
       : weight_(weight), k_(weight.dim(0) / 4), in_(weight.dim(1)), kernels_(packed_kernels(in_16_bits)) {
-    if (choose_engine(context, GemmEngine::automatic) != GemmEngine::native) return;
+    if (!packs_weights(context)) return;
     const std::size_t panels = 2 * vectors(context, k_);
     packed_ = packed_once(weight, {in_16_bits ? 5U : 4U, in_, k_}, [&] {
       Tensor packed = packed_panels(context, panels, in_, in_16_bits);

@@ -139,7 +139,7 @@ inline void winograd_multiply(const Tensor& v, const Tensor& u, const WinogradPr
                     panels = (product.out + columns - 1) / columns;
   // Rows in multiples of a register tile; with few of them, enough groups for all cores.
   constexpr std::size_t tile = 12;
-  const std::size_t most = context.device().is_cpu() ? 4 * tile : tile;  // ROWS_AT_ONCE in cl/winograd.cl
+  const std::size_t most = context.for_cpu() ? 4 * tile : tile;  // ROWS_AT_ONCE in cl/winograd.cl
   const std::size_t wanted = 8 * context.device().compute_units;
   const std::size_t shared = (rows * panels / wanted + tile - 1) / tile * tile;
   const std::size_t rows_per_group = std::clamp(shared, tile, most);
