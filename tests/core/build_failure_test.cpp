@@ -3,8 +3,7 @@
 
 namespace motiongan::kernels {
 inline constexpr char broken[] = "\nkernel void softmax_rows(global real* x) {\n  x[0] = no_such_name;\n}\n";
-inline constexpr File broken_files[] = {
-    {"prelude", prelude}, {"elementwise", elementwise}, {"rows", broken}};
+inline constexpr File broken_files[] = {{"prelude", prelude}, {"elementwise", elementwise}, {"rows", broken}};
 }  // namespace motiongan::kernels
 
 #define files broken_files  // replaces cl/rows.cl by the text above, in this program only
