@@ -218,6 +218,9 @@ class Context {
   const ContextStatistics& statistics() const { return state_->statistics; }
   /// Adds to statistics().gemm_flops, which benchmarks compare with the device's peak.
   void count_gemm_flops(double flops) const { state_->statistics.gemm_flops += flops; }
+  /// Add to statistics(), for what is not launched with tensors as arguments.
+  void count_bytes(double bytes) const { state_->statistics.bytes_touched += bytes; }
+  void count_launches(std::size_t launches) const { state_->statistics.launches += launches; }
   bool operator==(const Context& other) const { return state_ == other.state_; }
 
   /// "NAME (PLATFORM), 2 compute units, 6.1 GB, float"
@@ -269,9 +272,8 @@ class Context {
   template <class... Arguments>
   void launch(const char* file, const char* name, const LaunchGrid& grid,
               const Arguments&... arguments) const {
-    if (only_counts())
-      return void(state_->statistics.launches += grid.global[0] * grid.global[1] * grid.global[2] > 0);
     if (grid.global[0] == 0 || grid.global[1] == 0 || grid.global[2] == 0) return;
+    if (only_counts()) return count(arguments...);
     if (state_->interrupted) stop_if_interrupted();
     require(grid.global[0] <= std::numeric_limits<cl_uint>::max(), "kernel ", name, ": ", grid.global[0],
             " work-items do not fit 32 bits; use a smaller batch or fewer frames");
@@ -287,7 +289,7 @@ class Context {
       check(code, "clEnqueueNDRangeKernel", ": kernel ", name, " of cl/", file, ".cl, global size ",
             grid.global[0], "x", grid.global[1], "x", grid.global[2], ", local size ", local[0],
             ", arguments", describe(arguments)...);
-    ++state_->statistics.launches;
+    count(arguments...);
     if (event) record_time(name, ClEvent(event));
   }
 
@@ -313,6 +315,20 @@ class Context {
 
  private:
   explicit Context(std::shared_ptr<detail::ContextState> state) : state_(std::move(state)) {}
+
+  /// Counts a launch and the bytes of its arguments.
+  template <class... Arguments>
+  void count(const Arguments&... arguments) const {
+    ++state_->statistics.launches;
+    state_->statistics.bytes_touched += (0.0 + ... + bytes_of(arguments));
+  }
+  template <class T>
+  static double bytes_of(const T& argument) {
+    if constexpr (requires { argument.bytes(); })
+      return static_cast<double>(argument.bytes());
+    else
+      return 0;
+  }
 
   template <class T>
   static std::string describe(const T& argument) {

@@ -87,9 +87,10 @@ inline Tensor pack_b(const Context& context, const GemmCall& call,
                            call.b_transposed ? call.k : call.n, call.b_ld, 0);
       context.launch(detail::packed_kernels(call.b_in_16_bits), "gemm_pack",
                      LaunchGrid::groups(panels, (call.k + block - 1) / block),
-                     detail::At{call.b, call.b_offset[s]}, call.b_transposed ? std::size_t{1} : call.b_ld,
+                     detail::At{call.b, call.b_offset[s], call.n * call.k},
+                     call.b_transposed ? std::size_t{1} : call.b_ld,
                      call.b_transposed ? call.b_ld : std::size_t{1}, call.n, call.k,
-                     detail::At{packed, s * size});
+                     detail::At{packed, s * size, size});
     }
     return packed;
   });
@@ -103,6 +104,7 @@ inline void gemm(const Context& context, const GemmCall& call, GemmEngine engine
   if (call.m == 0 || call.n == 0 || call.batch == 0) return;
   context.count_gemm_flops(2.0 * static_cast<double>(call.m * call.n) *
                            static_cast<double>(call.k * call.segments * call.batch));
+  context.count_bytes(detail::gemm_bytes(context, call));
   const bool native = detail::is_native(context, call, engine);
   if (!native)
     detail::gemm_clblast(context, call);
@@ -113,8 +115,9 @@ inline void gemm(const Context& context, const GemmCall& call, GemmEngine engine
   if (call.rectified.empty() || (native && (context.wide() || !call.b_panels.empty()))) return;  // it is done
   context.launch("elementwise", detail::leaky_relu_kernel.name(),
                  LaunchGrid::items((call.m * call.n + context.vector_width() - 1) / context.vector_width()),
-                 detail::At{call.c, call.c_offset}, detail::At{call.rectified, call.rectified_offset},
-                 call.m * call.n, KernelReal{0}, KernelReal{0});
+                 detail::At{call.c, call.c_offset, call.m * call.n},
+                 detail::At{call.rectified, call.rectified_offset, call.m * call.n}, call.m * call.n,
+                 KernelReal{0}, KernelReal{0});
 }
 
 }  // namespace motiongan

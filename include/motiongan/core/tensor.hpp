@@ -72,6 +72,7 @@ class Tensor {
   const Context& context() const { return *context_; }
   const Shape& shape() const { return shape_; }
   std::size_t size() const { return size_; }
+  std::size_t bytes() const { return empty() ? 0 : size_ * context_->real_size(); }
   std::size_t dim(std::size_t i) const { return shape_.at(i); }
   std::size_t rank() const { return shape_.size(); }
   cl_mem buffer() const { return storage_->buffer(); }
@@ -174,6 +175,7 @@ class Indices {
 
   bool empty() const { return storage_ == nullptr; }
   std::size_t size() const { return size_; }
+  std::size_t bytes() const { return size_ * sizeof(cl_int); }
   const Context& context() const { return *context_; }
   cl_mem buffer() const { return storage_->buffer(); }
   void write(std::span<const cl_int> values) {
@@ -242,6 +244,11 @@ inline void add_argument(KernelArguments& to, const Indices& indices) { to.set(i
 struct At {
   const Tensor& tensor;
   std::size_t first;
+  /// The elements that the kernel touches, for ContextStatistics::bytes_touched; unless set, all that follow.
+  std::size_t count = std::numeric_limits<std::size_t>::max();
+  std::size_t bytes() const {
+    return std::min(count, tensor.size() - std::min(first, tensor.size())) * tensor.context().real_size();
+  }
   std::string describe() const { return concat(tensor.describe(), "+", first); }
 };
 inline void add_argument(KernelArguments& to, const At& at) {

@@ -158,7 +158,7 @@ inline void winograd_multiply(const Tensor& v, const Tensor& u, const WinogradPr
                flag(!product.rectified.empty(), gemm_rectify),
       .rows_per_group = narrow(rows_per_group)};
   const auto at = [&](const Tensor& t, std::size_t first) {  // what is empty is not read
-    return t.empty() ? At{y.tensor, 0} : At{t, first};
+    return t.empty() ? At{y.tensor, 0, 0} : At{t, first};
   };
   context.count_gemm_flops(2.0 * static_cast<double>(v.size()) * static_cast<double>(product.out));
   context.launch("winograd", "winograd_multiply",
