@@ -53,17 +53,20 @@ static inline void finish_element(global real* c, global const real* bias, globa
   if (flags & RECTIFY) rectified[i * c_row + j] = value < 0 ? 0 : value;
 }
 
-// The operands of a group's problem of the batch.
-#define START_PRODUCT                         \
-  const size_t batch = get_group_id(2);       \
-  a += g.a_first + batch * g.a_batch;         \
-  b += g.b_first + batch * g.b_batch;         \
-  c += g.c_first + batch * g.c_batch;         \
-  bias += g.bias_first;                       \
-  residual += g.residual_first;               \
-  rectified += rectified_first;               \
-  const uint item = get_local_id(0), k = g.k; \
-  const size_t c_row = g.c_row;
+// The operands of a group's problem of the batch. The offsets of the segments are copied, because Mesa
+// crashes on an argument with an index.
+#define START_PRODUCT                                                                         \
+  const size_t batch = get_group_id(2);                                                       \
+  a += g.a_first + batch * g.a_batch;                                                         \
+  b += g.b_first + batch * g.b_batch;                                                         \
+  c += g.c_first + batch * g.c_batch;                                                         \
+  bias += g.bias_first;                                                                       \
+  residual += g.residual_first;                                                               \
+  rectified += rectified_first;                                                               \
+  const uint item = get_local_id(0), k = g.k;                                                 \
+  const size_t c_row = g.c_row;                                                               \
+  const uint a_segment[4] = {g.a_segment[0], g.a_segment[1], g.a_segment[2], g.a_segment[3]}; \
+  const uint b_segment[4] = {g.b_segment[0], g.b_segment[1], g.b_segment[2], g.b_segment[3]};
 
 // Rows and columns of C of an item, ACROSS and DOWN apart.
 #define SIDE 4
@@ -88,10 +91,10 @@ __attribute__((reqd_work_group_size(GROUP, 1, 1))) kernel void gemm_tile(
     }
   for (uint s = 0; s < g.segments; ++s)
     for (uint p = 0; p < k; p += DEPTH) {
-      load_block(a + g.a_segment[s] + (size_t)first_row * g.a_row + (size_t)p * g.a_p, g.a_row, g.a_p,
+      load_block(a + a_segment[s] + (size_t)first_row * g.a_row + (size_t)p * g.a_p, g.a_row, g.a_p,
                  g.m - first_row, k - p, TILE_ROWS, DEPTH, rows);
-      load_block(b + g.b_segment[s] + (size_t)first_column * g.b_column + (size_t)p * g.b_p, g.b_column,
-                 g.b_p, g.n - first_column, k - p, TILE_COLUMNS, DEPTH, columns);
+      load_block(b + b_segment[s] + (size_t)first_column * g.b_column + (size_t)p * g.b_p, g.b_column, g.b_p,
+                 g.n - first_column, k - p, TILE_COLUMNS, DEPTH, columns);
       barrier(CLK_LOCAL_MEM_FENCE);
       real block[SIDE][SIDE];
 #pragma unroll
@@ -148,10 +151,10 @@ __attribute__((reqd_work_group_size(GROUP, 1, 1))) kernel void gemm_few(
   }
   for (uint s = 0; s < g.segments; ++s)
     for (uint p = 0; p < k; p += STRETCH) {
-      load_block(a + g.a_segment[s] + (size_t)first_row * g.a_row + (size_t)p * g.a_p, g.a_row, g.a_p,
+      load_block(a + a_segment[s] + (size_t)first_row * g.a_row + (size_t)p * g.a_p, g.a_row, g.a_p,
                  g.m - first_row, k - p, FEW, STRETCH, rows);
-      load_block(b + g.b_segment[s] + (size_t)first_column * g.b_column + (size_t)p * g.b_p, g.b_column,
-                 g.b_p, g.n - first_column, k - p, ACROSS, STRETCH, columns);
+      load_block(b + b_segment[s] + (size_t)first_column * g.b_column + (size_t)p * g.b_p, g.b_column, g.b_p,
+                 g.n - first_column, k - p, ACROSS, STRETCH, columns);
       barrier(CLK_LOCAL_MEM_FENCE);
       real block[FEW];
 #pragma unroll
