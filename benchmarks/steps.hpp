@@ -13,31 +13,35 @@
 
 namespace motiongan::bench {
 
-/// One measurement; `extra` is added to its line unchanged.
+/// One measurement; `extra` is added to its line unchanged. launches and bytes: see ContextStatistics.
 struct Measured {
   std::string name;
-  double ms = 0, gflop = 0;
+  double ms = 0, gflop = 0, launches = 0, bytes = 0;
   nlohmann::ordered_json extra = nlohmann::ordered_json::object();
 };
 
-/// The median time of a step, including waiting for the device, and the GFLOP of its matrix products.
+/// The median time of a step, including waiting for the device, and what it counts. With 0 seconds the step
+/// runs as few times as give any.
 template <class Step>
 Measured measure(const Context& context, std::string name, double seconds, Step step) {
-  for (int i = 0; i < 3; ++i) step();
+  for (int i = 0; i < (seconds > 0 ? 3 : 1); ++i) step();
   context.finish();
-  const double before = context.statistics().gemm_flops;
+  const ContextStatistics before = context.statistics();
   step();
   context.finish();
-  const double flops = context.statistics().gemm_flops - before;
+  const ContextStatistics& now = context.statistics();
+  const double flops = now.gemm_flops - before.gemm_flops, bytes = now.bytes_touched - before.bytes_touched,
+               launches = static_cast<double>(now.launches - before.launches);
   std::vector<double> times;
-  for (const double start = bench::seconds(); times.size() < 5 || bench::seconds() - start < seconds;) {
+  const std::size_t least = seconds > 0 ? 5 : 1;
+  for (const double start = bench::seconds(); times.size() < least || bench::seconds() - start < seconds;) {
     const double t = bench::seconds();
     step();
     context.finish();
     times.push_back(bench::seconds() - t);
   }
   std::nth_element(times.begin(), times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2), times.end());
-  return {std::move(name), 1e3 * times[times.size() / 2], flops / 1e9};
+  return {std::move(name), 1e3 * times[times.size() / 2], flops / 1e9, launches, bytes};
 }
 
 /// The times of one measurement in all rounds, ours and those of each PyTorch.

@@ -6,7 +6,7 @@
 #include "gemm_tiles.cl"
 
 // Values of p and rows of C packed at once: 48 KB of A, of which a tile reads a quarter, and 16 KB of B.
-#ifdef DEVICE_IS_CPU
+#ifdef FOR_CPU
 #define OUTER_BLOCK 128
 #define OUTER_ROWS 96
 #else

@@ -44,8 +44,6 @@ typedef real weight;
   }
 FOR_TILE_ROWS(DEFINE_MULTIPLY_PANEL)
 
-#define RECTIFY 16
-
 static inline void rectify(global const real* c, size_t stride, uint rows, uint width, global real* out) {
   for (uint i = 0; i < rows; ++i, c += stride, out += stride)
     for (uint j = 0; j < width; j += VW) {

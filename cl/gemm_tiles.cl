@@ -1,5 +1,5 @@
-// Shared by gemm.cl and gemm_packed.cl: unaligned vectors, packing of B, register tiles of C, and the
-// arguments of a product.
+// Shared by gemm.cl and gemm_packed.cl: unaligned vectors, packing of B, and register tiles of C.
+#include "gemm_epilogue.cl"
 
 #define COLUMNS (2 * VW)
 #ifdef REAL_IS_DOUBLE
@@ -9,16 +9,11 @@
 #endif
 
 // Values of p packed at once: 96 KB with 16 floats per vector, which fits in the L2 cache.
-#ifdef DEVICE_IS_CPU
+#ifdef FOR_CPU
 #define BLOCK 768
 #else
 #define BLOCK 32
 #endif
-
-#define ACCUMULATE 1
-#define BIAS 2
-#define RESIDUAL 4
-#define RELU 8
 
 #define ROWS_1(F) F(0)
 #define ROWS_2(F) ROWS_1(F) F(1)
@@ -31,7 +26,7 @@ typedef JOIN(REAL, 4) real4;
 
 // Vectors in private memory are aligned (realv), those in tensors are not. PoCL's vstore splits into pieces
 // of 16 bytes, so on the CPU a vector type of lower alignment replaces vload and vstore.
-#ifdef DEVICE_IS_CPU
+#ifdef FOR_CPU
 typedef realv anywhere __attribute__((aligned(REAL_BYTES)));
 typedef real4 anywhere4 __attribute__((aligned(REAL_BYTES)));
 #define READ(p) (*(global const anywhere*)(p))
@@ -174,13 +169,6 @@ static inline void load_tile(global const real* c, size_t stride, uint rows, uin
   }
 }
 
-// The epilogue of one element; the ReLU preserves NaN.
-static inline real finish_one(real value, uint flags, global const real* bias, global const real* residual) {
-  if (flags & BIAS) value += *bias;
-  if (flags & RESIDUAL) value += *residual;
-  return (flags & RELU) && value < 0 ? 0 : value;
-}
-
 static inline void store_tile(global real* c, size_t stride, uint rows, uint width, global const real* bias,
                               global const real* residual, size_t residual_stride, uint flags,
                               const realv* tile) {
@@ -200,15 +188,3 @@ static inline void store_tile(global real* c, size_t stride, uint rows, uint wid
     }
   }
 }
-
-// The arguments of a product as one struct, because PoCL has a cost per argument. Mirrors GemmNumbers on the
-// host.
-typedef struct {
-  uint m, n, k, segments, flags;
-  uint a_first, b_first, c_first, bias_first, residual_first;
-  uint a_row, a_p, b_p, b_column, c_row,
-      residual_row;  // strides: element (i, p) of A is a[i * a_row + p * a_p]
-  uint a_batch, b_batch, c_batch;
-  uint a_segment[4], b_segment[4];
-  uint rows_per_group, panels_per_group, panels_at_once;
-} Numbers;

@@ -52,7 +52,7 @@ static inline void store_part(realv v, global real* p, uint left) {
 
 // PoCL's vstoreN splits into pieces of 16 bytes; a vector type of lower alignment compiles to one
 // instruction.
-#ifdef DEVICE_IS_CPU
+#ifdef FOR_CPU
 #ifdef REAL_IS_DOUBLE
 typedef realv realv_anywhere __attribute__((aligned(8)));
 #else

@@ -1,4 +1,4 @@
-// Sums over an axis in a fixed order, and broadcasting, their adjoint.
+// Sums over an axis in a fixed order, and broadcasting, their adjoint. Sums of rows: rows.cl.
 
 /// out[o, s, i] = scale * sum of x[o, j, i] over j in [s*chunk, (s+1)*chunk), in ascending order.
 kernel void sum_axis(global const real* x, uint x0, global real* out, uint out0, uint outer, uint count,
@@ -15,17 +15,6 @@ kernel void sum_axis(global const real* x, uint x0, global real* out, uint out0,
   else
     for (uint j = first; j < last; ++j, p += inner) sum += load_part(p, left);
   store_some(sum * scale, out + out0 + row * inner + i, left);
-}
-
-/// out[r] = scale * sum of x[r, :].
-kernel void sum_rows(global const real* x, uint x0, global real* out, uint out0, uint rows, uint count,
-                     real scale) {
-  const uint r = get_global_id(0);
-  if (r >= rows) return;
-  global const real* p = x + x0 + r * count;
-  realv sum = 0;
-  for (uint j = 0; j < count; j += VW) sum += load_some(p + j, count - j);
-  out[out0 + r] = lane_sum(sum) * scale;
 }
 
 /// out[o, j, i] = scale * x[o, i] for j < count.

@@ -3,19 +3,10 @@
 // requested shift wraps around, and products of spectra give the cross-correlation over frames at every
 // shift.
 
-/// squares[r] = sum over the columns of x[r]^2. Work-items: rows.
-kernel void search_squares(global const real* x, uint x0, global real* squares, uint squares0, uint rows,
-                           uint columns) {
-  const uint r = get_global_id(0);
-  if (r >= rows) return;
-  global const real* p = x + x0 + (size_t)r * columns;
-  realv sum = 0;
-  for (uint j = 0; j < columns; j += VW) {
-    const realv v = load_some(p + j, columns - j);
-    sum = fma(v, v, sum);
-  }
-  squares[squares0 + r] = lane_sum(sum);
-}
+#ifdef WIDE
+#define TEAM_IS_GROUP
+#endif
+#include "team.cl"
 
 /// Spectra of windows: out[f, w, :columns] = sum over t of x[starts[w] + t] cos(f, t); out[f, w, columns:] is
 /// the same with -sin. `table` [ceil(frequencies / 4), frames, 8] holds four cosines and four negative sines,
@@ -55,7 +46,31 @@ kernel void search_spectra(global const real* x, uint x0, global const int* star
 /// own[w, s, 0] = sum of squares over the frames of window w that overlap a hypothesis shifted by s (the last
 /// frames - s); own[w, s, 1] the same for a shift by -s (the first frames - s); own[w, s, 2:4] = cosine and
 /// sine of the yaw of frame s. `squares` [rows] is that of the plain dimensions, `track` is [rows, dims].
-/// Rotation does not change squares. Sums for larger s are updated from those for s - 1. Work-items: windows.
+/// Rotation does not change squares.
+#ifdef WIDE
+/// Work-items: windows times shifts.
+kernel void search_overlaps(global const real* squares, uint squares0, global const real* track, uint track0,
+                            global const int* starts, global real* own, uint own0, uint windows, uint frames,
+                            uint reach, uint dims, uint turned, real yaw_scale) {
+  const uint w = get_global_id(0) / (reach + 1), s = get_global_id(0) % (reach + 1), n = frames - s;
+  if (w >= windows) return;
+  global const real* square = squares + squares0 + starts[w];
+  global const real* place = track + track0 + (size_t)starts[w] * dims;
+  global real* out = own + own0 + ((size_t)w * (reach + 1) + s) * 4;
+  real late = 0, early = 0;
+  for (uint t = 0; t < n; ++t) {
+    late += square[t + s], early += square[t];
+    for (uint d = 0; d < dims; ++d) {
+      const real after = place[(t + s) * dims + d] - place[s * dims + d];
+      const real before = place[t * dims + d] - place[d];
+      late = fma(after, after, late), early = fma(before, before, early);
+    }
+  }
+  const real angle = turned ? place[s * dims + 2] * yaw_scale : (real)0;
+  out[0] = late, out[1] = early, out[2] = cos(angle), out[3] = sin(angle);
+}
+#else
+/// Sums for larger s are updated from those for s - 1. Work-items: windows.
 kernel void search_overlaps(global const real* squares, uint squares0, global const real* track, uint track0,
                             global const int* starts, global real* own, uint own0, uint windows, uint frames,
                             uint reach, uint dims, uint turned, real yaw_scale) {
@@ -91,6 +106,7 @@ kernel void search_overlaps(global const real* squares, uint squares0, global co
     }
   }
 }
+#endif
 
 // Sum over n frames of the products of a window's track, from its first overlapping frame, and that of the
 // hypotheses, `other` [n, dims, lanes], which is already relative and rotated; `sums` [dims, lanes] is its
@@ -132,23 +148,26 @@ static inline realv track_products(global const real* track, global const real* 
 /// cosine and sine; other_squares [reach + 1, 2, lanes], like own; other_track
 /// [reach + 1, frames, dims, lanes], starting at frame s; other_sums [reach + 1, 2, dims, lanes], over the
 /// overlapping frames: for shift s from frame 0, for -s from frame s; nearest and shifts [windows, lanes].
-/// Work-items: windows times blocks of VW hypotheses.
-kernel void search_nearest(global const real* products, uint products0, global const real* own, uint own0,
-                           global const real* track, uint track0, global const int* starts,
-                           global const real* turns, uint turns0, global const real* other_squares,
-                           uint other_squares0, global const real* other_track, uint other_track0,
-                           global const real* other_sums, uint other_sums0, global real* nearest,
-                           uint nearest0, global real* shifts, uint shifts0, uint windows, uint frames,
-                           uint frequencies, uint reach, uint lanes, uint dof, uint dims, uint turned) {
-  const uint blocks = lanes / VW, item = get_global_id(0);
-  const uint w = item / blocks, lane = item % blocks * VW;
+/// Teams: windows times blocks of VW hypotheses; the items of a team share the shifts.
+TEAM_KERNEL void search_nearest(global const real* products, uint products0, global const real* own,
+                                uint own0, global const real* track, uint track0, global const int* starts,
+                                global const real* turns, uint turns0, global const real* other_squares,
+                                uint other_squares0, global const real* other_track, uint other_track0,
+                                global const real* other_sums, uint other_sums0, global real* nearest,
+                                uint nearest0, global real* shifts, uint shifts0, uint windows, uint frames,
+                                uint frequencies, uint reach, uint lanes, uint dof, uint dims, uint turned) {
+#ifdef TEAM_IS_GROUP
+  local realv bests[GROUP], places[GROUP];
+#endif
+  const uint blocks = lanes / VW, at = TEAM;
+  const uint w = at / blocks, lane = at % blocks * VW;
   if (w >= windows) return;
   global const real* p = products + products0 + (size_t)w * frequencies * 2 * lanes + lane;
   global const real* place = track + track0 + (size_t)starts[w] * dims;
   global const real* mine = own + own0 + (size_t)w * (reach + 1) * 4;
-  global const real* turn = turns + turns0;
+  global const real* turn = turns + turns0 + ITEM * 2 * frequencies;
   realv best = INFINITY, where = 0;
-  for (uint s = 0; s <= reach; ++s, turn += 2 * frequencies) {
+  for (uint s = ITEM; s <= reach; s += ITEMS, turn += ITEMS * 2 * frequencies) {
     realv even = 0, odd = 0;
     for (uint f = 0; f < frequencies; ++f) {
       even = fma(LOAD_VECTOR(p + f * 2 * lanes), (realv)(turn[2 * f]), even);
@@ -172,6 +191,21 @@ kernel void search_nearest(global const real* products, uint products0, global c
       where = closer ? (realv)(early ? -(real)s : (real)s) : where;
     }
   }
+#ifdef TEAM_IS_GROUP
+  bests[ITEM] = best, places[ITEM] = where;
+  for (uint step = GROUP / 2; step > 0; step /= 2) {
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (ITEM < step) {
+      const realv other = bests[ITEM + step], there = places[ITEM + step];
+      // Among equals the first in the order 0, 1, -1, 2, -2 ...
+      const maskv sooner = fabs(there) < fabs(where) || (fabs(there) == fabs(where) && there > where);
+      const maskv closer = other < best || (other == best && sooner);
+      bests[ITEM] = best = closer ? other : best;
+      places[ITEM] = where = closer ? there : where;
+    }
+  }
+  if (ITEM > 0) return;
+#endif
   STORE_VECTOR(best, nearest + nearest0 + (size_t)w * lanes + lane);
   STORE_VECTOR(where, shifts + shifts0 + (size_t)w * lanes + lane);
 }

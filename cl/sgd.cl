@@ -1,19 +1,5 @@
 // Stochastic gradient descent with gradient norm clipping over all parameters.
 
-/// out[s] = sum of squares of x in [s*chunk, (s+1)*chunk), in ascending order.
-kernel void squares_of_chunks(global const real* x, uint x0, global real* out, uint out0, uint n,
-                              uint chunk) {
-  const uint s = get_global_id(0), first = s * chunk;
-  if (first >= n) return;
-  const uint last = min(first + chunk, n);
-  realv sum = 0;
-  for (uint i = first; i < last; i += VW) {
-    const realv v = load_some(x + x0 + i, last - i);
-    sum += v * v;
-  }
-  out[out0 + s] = lane_sum(sum);
-}
-
 /// parameter -= rate * gradient, with the gradient scaled down to norm `longest` if its norm exceeds that;
 /// `square` [1] is the squared norm. longest = 0: no limit.
 kernel void sgd(global real* parameter, uint parameter0, global const real* gradient, uint gradient0,

@@ -4,7 +4,7 @@
 
 #define MOST_POINTS 8
 // Rows of a work-group: 49 KB of products for 8 points and 32 columns.
-#ifdef DEVICE_IS_CPU
+#ifdef FOR_CPU
 #define ROWS_AT_ONCE 48
 #else
 #define ROWS_AT_ONCE 12

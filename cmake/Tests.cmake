@@ -40,6 +40,15 @@ foreach(source IN LISTS sources)
   endif()
 endforeach()
 
+# Suites whose kernels have a wide form (docs/devices.md) run in it too, whatever the device.
+foreach(name core_gemm golden_golden networks_attention_rollout networks_rnn_stream ops_attention ops_derivatives ops_empty
+    optim_sgd search_distance)
+  if(TARGET ${name})
+    own_test(${name}_wide wide ${name})
+    set_tests_properties(${name}_wide PROPERTIES ENVIRONMENT MOTIONGAN_KERNELS=wide)
+  endif()
+endforeach()
+
 # The C interface as programs in C use it, with models that c_models writes for them and for the examples.
 if(TARGET motiongan-c)
   set(motiongan_c_models "${PROJECT_BINARY_DIR}/tests/c-models")

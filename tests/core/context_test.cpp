@@ -1,6 +1,7 @@
 // Context: buffer pool, memory limit, environment variables, errors.
 #include <doctest/doctest.h>
 
+#include <motiongan/core/gemm.hpp>
 #include <motiongan/ops/elementwise.hpp>
 
 #include "../support/messages.hpp"
@@ -188,4 +189,34 @@ TEST_CASE("the host memory kept for uploads has a limit, and uploads arrive whol
   CHECK(large.to_host() == std::vector<float>(many, 3));
   for (int i = 0; i < 200; ++i) Tensor::from(context, {10}, std::vector<float>(10, 1));
   CHECK(now.bytes_staged < 64 * 1024);  // small uploads replace the large ones' memory
+}
+
+TEST_CASE("statistics count the bytes of the arguments, in a context that only counts too") {
+  const Context real;
+  for (const Context& context : {real, real.counting()}) {
+    const double& bytes = context.statistics().bytes_touched;
+    const Tensor x(context, {10, 3}), out(context, {10, 3}), b(context, {3, 7}), c(context, {10, 7});
+    const auto added = [&](const auto& work) {
+      const double before = bytes;
+      work();
+      return bytes - before;
+    };
+    const auto affine = [&](const auto& from, const auto& to, std::size_t n) {
+      return added([&] {
+        context.launch("elementwise", "affine", LaunchGrid::items(n), from, to, n, KernelReal{1},
+                       KernelReal{0});
+      });
+    };
+    CHECK(affine(x, out, 30) == 2 * 30 * 4);
+    CHECK(affine(x.view(6, {3}), out, 3) == (3 + 30) * 4);
+    CHECK(affine(detail::At{x, 6, 3}, detail::At{out, 20}, 3) == (3 + 10) * 4);
+    CHECK(affine(x, out, 0) == 0);
+    GemmCall call{.m = 10, .n = 7, .k = 3, .a = x, .b = b, .c = c, .a_ld = 3, .b_ld = 7, .c_ld = 7};
+    const auto product = [&] { return added([&] { gemm(context, call); }); };
+    CHECK(product() == (30 + 21 + 70) * 4);
+    call.accumulate = true, call.bias = b.view(0, {7});
+    CHECK(product() == (30 + 21 + 2 * 70 + 7) * 4);
+    call.m = 0;
+    CHECK(product() == 0);
+  }
 }

@@ -310,9 +310,10 @@ TEST_CASE("packing B changes no bit, whatever the size, and nothing around C") {
     }
     GemmCall call = make(context, {.m = 4, .n = 5, .k = 6}, random).call;
     call.b_panels = pack_b(context, call, GemmEngine::native);
+    CHECK(call.b_panels.empty() == context.wide());
     CHECK(pack_b(context, call, GemmEngine::clblast).empty());
     call.a_transposed = true, call.a_ld = 4;
-    CHECK_THROWS_AS(gemm(context, call), Error);
+    if (!context.wide()) CHECK_THROWS_AS(gemm(context, call), Error);
   }
 }
 

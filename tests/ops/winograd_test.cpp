@@ -35,9 +35,9 @@ double allowed_distance(Precision precision) { return precision == Precision::f3
 
 /// Whether convolutions are computed in Winograd's form here; says that a test is skipped if not.
 bool in_use(const Context& context) {
-  const bool native = choose_engine(context, GemmEngine::automatic) == GemmEngine::native;
-  if (!native) MESSAGE("skipped: only the native engine uses Winograd's form");
-  return native;
+  const bool used = packs_weights(context);
+  if (!used) MESSAGE("skipped: only the native engine's narrow form uses Winograd's form");
+  return used;
 }
 
 Taps all_taps(const Offsets& offsets) {

@@ -13,11 +13,15 @@ namespace motiongan {
 
 /// Statistics of a Context: counters since it was made, and current byte counts.
 struct ContextStatistics {
-  std::size_t allocations = 0;   ///< buffers allocated by the driver
-  std::size_t reads = 0;         ///< copies from device to host (each waits for the queue)
-  std::size_t writes = 0;        ///< copies from host to device
-  std::size_t launches = 0;      ///< kernels enqueued
-  double gemm_flops = 0;         ///< floating-point operations in matrix products
+  std::size_t allocations = 0;  ///< buffers allocated by the driver
+  std::size_t reads = 0;        ///< copies from device to host (each waits for the queue)
+  std::size_t writes = 0;       ///< copies from host to device
+  std::size_t launches = 0;     ///< kernels enqueued
+  double gemm_flops = 0;        ///< floating-point operations in matrix products
+  /// Bytes of the operands of matrix products and of the arguments of all other kernels, each counted once:
+  /// an estimate of what a device without caches moves. Too high where a kernel touches part of an argument
+  /// that does not say which (At::count), too low where it reads and writes one.
+  double bytes_touched = 0;
   std::size_t bytes_in_use = 0;  ///< in live tensors
   std::size_t bytes_cached = 0;  ///< in free buffers of the pool
   std::size_t peak_bytes = 0;    ///< maximum of bytes_in_use + bytes_cached

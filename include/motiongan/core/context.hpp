@@ -30,6 +30,8 @@ struct ContextOptions {
   bool verbose = false;                  ///< print the chosen device to standard error
   /// Elements of one tensor; 0 or more than most_elements: most_elements. For tests.
   std::size_t element_limit = 0;
+  /// Items of a work-group; 0 or more than Context::group() would have: as many as that. For tests.
+  std::size_t group_limit = 0;
 };
 
 /// The most elements of one tensor: kernels count them in 32 bits. The difference from 2^32 is for the
@@ -70,7 +72,7 @@ class LiveQueues {
 
 struct ContextState {
   Device device;
-  Precision precision = Precision::f32;
+  KernelTarget target;
   std::size_t element_limit = most_elements;
   Driver driver;
   ClContext context;
@@ -145,10 +147,10 @@ class Context {
     auto& s = *state_;
     s.device = options.device.empty() ? default_device() : choose_device(survey_devices(), options.device);
     s.driver.device = s.device.name;
-    s.precision = options.precision;
+    s.target = {options.precision, kernel_form(s.device), detail::group_size(s.device, options.group_limit)};
     if (options.element_limit > 0) s.element_limit = std::min(options.element_limit, most_elements);
     require_usable(s.device);
-    require(s.precision == Precision::f32 || s.device.has_double, "device ", s.device.name,
+    require(options.precision == Precision::f32 || s.device.has_double, "device ", s.device.name,
             " has no double precision (cl_khr_fp64): use Precision::f32");
     cl_int code = CL_SUCCESS;
     const cl_context_properties properties[] = {
@@ -169,7 +171,7 @@ class Context {
     s.pool = std::make_unique<detail::BufferPool>(s.context.get(), limit ? limit : s.device.global_memory,
                                                   s.device.max_allocation, s.statistics, s.driver);
     s.pool->fail_allocation(detail::environment_count("MOTIONGAN_FAIL_ALLOCATION", "buffers"));
-    s.programs = std::make_unique<detail::ProgramCache>(s.context.get(), s.device, s.precision, s.driver);
+    s.programs = std::make_unique<detail::ProgramCache>(s.context.get(), s.device, s.target, s.driver);
     if (options.verbose) std::fprintf(stderr, "device: %s\n", description().c_str());
   }
 
@@ -181,14 +183,14 @@ class Context {
     constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max() / 2;
     auto state = std::make_shared<detail::ContextState>();
     state->device = state_->device;
-    state->precision = state_->precision;
+    state->target = state_->target;
     state->driver.device = state->device.name;
     state->element_limit = limited ? state_->element_limit : unlimited;
     state->pool = std::make_unique<detail::BufferPool>(nullptr, limited ? memory_limit() : unlimited,
                                                        limited ? device().max_allocation : unlimited,
                                                        state->statistics, state->driver);
     state->programs =
-        std::make_unique<detail::ProgramCache>(nullptr, state->device, state->precision, state->driver);
+        std::make_unique<detail::ProgramCache>(nullptr, state->device, state->target, state->driver);
     return Context(std::move(state));
   }
   /// Whether this is a context made by counting().
@@ -197,9 +199,19 @@ class Context {
   /// Bytes that all buffers together may have.
   std::size_t memory_limit() const { return state_->pool->limit(); }
   const Device& device() const { return state_->device; }
-  Precision precision() const { return state_->precision; }
+  Precision precision() const { return state_->target.precision; }
   /// Bytes per element: 4 or 8.
-  std::size_t real_size() const { return state_->precision == Precision::f64 ? 8 : 4; }
+  std::size_t real_size() const { return precision() == Precision::f64 ? 8 : 4; }
+  /// Whether the kernels have the wide form; see kernel_form().
+  bool wide() const { return state_->target.wide(); }
+  /// Whether they are compiled for a CPU's caches and vector registers.
+  bool for_cpu() const { return state_->programs->for_cpu(); }
+  /// Items of a work-group: 64, or the power of two below that the device allows.
+  std::size_t group() const { return state_->target.group; }
+  /// x * y * z work-groups of group() items, for kernels of the wide form.
+  LaunchGrid groups(std::size_t x, std::size_t y = 1, std::size_t z = 1) const {
+    return {3, {x * group(), y, z}, {group(), 1, 1}};
+  }
   /// The most elements of a tensor.
   std::size_t element_limit() const { return state_->element_limit; }
   /// Elements that a work-item of an elementwise kernel handles.
@@ -209,6 +221,11 @@ class Context {
   const ContextStatistics& statistics() const { return state_->statistics; }
   /// Adds to statistics().gemm_flops, which benchmarks compare with the device's peak.
   void count_gemm_flops(double flops) const { state_->statistics.gemm_flops += flops; }
+  /// Add to statistics(), for what is not launched with tensors as arguments.
+  /// \{
+  void count_bytes(double bytes) const { state_->statistics.bytes_touched += bytes; }
+  void count_launches(std::size_t launches) const { state_->statistics.launches += launches; }
+  /// \}
   /// Whether both are copies of the same context.
   bool operator==(const Context& other) const { return state_ == other.state_; }
 
@@ -217,7 +234,7 @@ class Context {
     const Device& d = state_->device;
     return concat(d.name, " (", d.platform_name, "), ", d.compute_units, " compute units, ",
                   std::round(static_cast<double>(d.global_memory) / 1e8) / 10, " GB, ",
-                  state_->precision == Precision::f64 ? "double" : "float");
+                  precision() == Precision::f64 ? "double" : "float");
   }
 
   /// An uninitialised buffer from the pool. Throws Error if the memory limit would be exceeded.
@@ -262,23 +279,24 @@ class Context {
   template <class... Arguments>
   void launch(const char* file, const char* name, const LaunchGrid& grid,
               const Arguments&... arguments) const {
-    if (only_counts())
-      return void(state_->statistics.launches += grid.global[0] * grid.global[1] * grid.global[2] > 0);
     if (grid.global[0] == 0 || grid.global[1] == 0 || grid.global[2] == 0) return;
+    if (only_counts()) return count(arguments...);
     if (state_->interrupted) stop_if_interrupted();
     require(grid.global[0] <= std::numeric_limits<cl_uint>::max(), "kernel ", name, ": ", grid.global[0],
             " work-items do not fit 32 bits; use a smaller batch or fewer frames");
-    detail::KernelArguments to{state_->programs->kernel(file, name), state_->driver, state_->precision, name};
+    detail::KernelArguments to{state_->programs->kernel(file, name), state_->driver, precision(), name};
     (add_argument(to, arguments), ...);
+    std::array<std::size_t, 3> local = grid.local;
+    if (local[0] == 0) local[0] = group();
     cl_event event = nullptr;
     const cl_int code =
-        clEnqueueNDRangeKernel(queue(), to.kernel, grid.dimensions, nullptr, grid.global.data(),
-                               grid.local.data(), 0, nullptr, state_->profiling ? &event : nullptr);
+        clEnqueueNDRangeKernel(queue(), to.kernel, grid.dimensions, nullptr, grid.global.data(), local.data(),
+                               0, nullptr, state_->profiling ? &event : nullptr);
     if (code != CL_SUCCESS)
       check(code, "clEnqueueNDRangeKernel", ": kernel ", name, " of cl/", file, ".cl, global size ",
-            grid.global[0], "x", grid.global[1], "x", grid.global[2], ", local size ", grid.local[0],
+            grid.global[0], "x", grid.global[1], "x", grid.global[2], ", local size ", local[0],
             ", arguments", describe(arguments)...);
-    ++state_->statistics.launches;
+    count(arguments...);
     if (event) record_time(name, ClEvent(event));
   }
 
@@ -304,6 +322,20 @@ class Context {
 
  private:
   explicit Context(std::shared_ptr<detail::ContextState> state) : state_(std::move(state)) {}
+
+  /// Counts a launch and the bytes of its arguments.
+  template <class... Arguments>
+  void count(const Arguments&... arguments) const {
+    ++state_->statistics.launches;
+    state_->statistics.bytes_touched += (0.0 + ... + bytes_of(arguments));
+  }
+  template <class T>
+  static double bytes_of(const T& argument) {
+    if constexpr (requires { argument.bytes(); })
+      return static_cast<double>(argument.bytes());
+    else
+      return 0;
+  }
 
   template <class T>
   static std::string describe(const T& argument) {

@@ -25,6 +25,7 @@ struct Device {
   cl_ulong global_memory = 0;      ///< bytes
   cl_ulong max_allocation = 0;     ///< bytes in one buffer
   cl_uint native_float_width = 1;  ///< floats per vector register
+  std::size_t max_group = 1;       ///< work-items of one work-group
   bool has_double = false;         ///< whether Precision::f64 works
   bool available = true;           ///< CL_DEVICE_AVAILABLE
   bool has_compiler = true;        ///< CL_DEVICE_COMPILER_AVAILABLE
@@ -89,6 +90,7 @@ inline Device describe_device(cl_platform_id platform, const std::string& platfo
   d.global_memory = device_value<cl_ulong>(id, CL_DEVICE_GLOBAL_MEM_SIZE);
   d.max_allocation = device_value<cl_ulong>(id, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
   d.native_float_width = device_value<cl_uint>(id, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT);
+  d.max_group = device_value<std::size_t>(id, CL_DEVICE_MAX_WORK_GROUP_SIZE);
   d.has_double = device_string(id, CL_DEVICE_EXTENSIONS).find("cl_khr_fp64") != std::string::npos;
   d.available = device_value<cl_bool>(id, CL_DEVICE_AVAILABLE) != CL_FALSE;
   d.has_compiler = device_value<cl_bool>(id, CL_DEVICE_COMPILER_AVAILABLE) != CL_FALSE;

@@ -51,12 +51,24 @@ inline std::ostream& operator<<(std::ostream& out, const GemmCall& g) {
 
 namespace detail {
 
-// Flags of the kernels in cl/gemm_tiles.cl and cl/gemm_packed.cl.
+// Flags of the kernels, cl/gemm_epilogue.cl.
 constexpr cl_uint gemm_accumulate = 1, gemm_bias = 2, gemm_residual = 4, gemm_relu = 8, gemm_rectify = 16;
 
 inline cl_uint gemm_flags(const GemmCall& g) {
   return (g.accumulate ? gemm_accumulate : 0) | (g.bias.empty() ? 0 : gemm_bias) |
          (g.residual.empty() ? 0 : gemm_residual) | (g.relu ? gemm_relu : 0);
+}
+
+/// Bytes of all operands, those of every segment and problem of the batch.
+inline double gemm_bytes(const Context& context, const GemmCall& g) {
+  const auto product = [](auto... sizes) { return (static_cast<double>(sizes) * ...); };
+  const double c = product(g.m, g.n, g.batch), problems_of_b = g.b_batch_stride > 0 ? double(g.batch) : 1;
+  const double real = static_cast<double>(context.real_size());
+  const double b = g.b_in_16_bits && !g.b_panels.empty() ? 2 : real;
+  return real * (product(g.m, g.k, g.segments, g.batch) + c * (g.accumulate ? 2 : 1) +
+                 (g.bias.empty() ? 0 : product(g.n)) + (g.residual.empty() ? 0 : c) +
+                 (g.rectified.empty() ? 0 : c)) +
+         b * product(g.k, g.n, g.segments) * problems_of_b;
 }
 
 /// A tensor's shape, formatted only if a message is.

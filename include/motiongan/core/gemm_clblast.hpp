@@ -24,8 +24,10 @@ inline bool clblast_can(const GemmCall& g) {
          rows_apart(g.b_transposed, g.k, g.n, g.b_ld);
 }
 
-/// One CLBlast call per segment, accumulating into C, then the epilogue in the library's own kernel.
+/// One CLBlast call per segment, accumulating into C, then the epilogue in the library's own kernel. A call
+/// counts as one launch.
 inline void gemm_clblast(const Context& context, const GemmCall& g) {
+  context.count_launches(g.segments);
   if (context.only_counts()) return;
   const std::size_t a_ld = clblast_ld(g.a_transposed ? g.k : g.m, g.a_transposed ? g.m : g.k, g.a_ld);
   const std::size_t b_ld = clblast_ld(g.b_transposed ? g.n : g.k, g.b_transposed ? g.k : g.n, g.b_ld);
@@ -57,9 +59,10 @@ inline void gemm_clblast(const Context& context, const GemmCall& g) {
   grid.dimensions = 2;
   grid.global[1] = g.batch;
   const auto present = [&](const Tensor& t) -> const Tensor& { return t.empty() ? g.c : t; };
-  context.launch("gemm", "gemm_finish", grid, g.c.buffer(), c_first, present(g.bias),
-                 present(g.residual).buffer(), present(g.residual).offset() + g.residual_offset, g.m, g.n,
-                 g.c_ld, g.residual_ld, g.c_batch_stride, flags);
+  context.launch("gemm_finish", "gemm_finish", grid, g.c.buffer(), c_first, present(g.bias).buffer(),
+                 present(g.bias).offset(), present(g.residual).buffer(),
+                 present(g.residual).offset() + g.residual_offset, g.m, g.n, g.c_ld, g.residual_ld,
+                 g.c_batch_stride, flags);
 }
 
 }  // namespace motiongan::detail

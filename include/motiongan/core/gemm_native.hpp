@@ -1,5 +1,5 @@
-// The native backend of gemm(): the kernels of cl/gemm.cl, cl/gemm_outer.cl and cl/gemm_packed.cl, written
-// for CPU devices. They differ in speed only.
+// The native backend of gemm() in the narrow form: the kernels of cl/gemm.cl, cl/gemm_outer.cl and
+// cl/gemm_packed.cl, written for CPU devices. They differ in speed only.
 #pragma once
 #include <algorithm>
 
@@ -70,7 +70,7 @@ inline GemmSplit split_packed(const Context& context, const GemmCall& g) {
 /// in a group, so that packing is shared, but enough groups for all cores.
 inline GemmSplit split_outer(const Context& context, const GemmCall& g) {
   const std::size_t tile = 12, panels = gemm_panels(context, g);
-  const std::size_t most = context.device().is_cpu() ? 8 * tile : tile;  // at most OUTER_ROWS
+  const std::size_t most = context.for_cpu() ? 8 * tile : tile;  // at most OUTER_ROWS
   const std::size_t wanted = 4 * context.device().compute_units;
   std::size_t rows = most, at_once = std::min<std::size_t>(panels, 4);
   const auto groups = [&] { return (g.m + rows - 1) / rows * ((panels + at_once - 1) / at_once) * g.batch; };
@@ -79,7 +79,7 @@ inline GemmSplit split_outer(const Context& context, const GemmCall& g) {
   return {rows, at_once, 1};
 }
 
-/// Mirrors struct Numbers in cl/gemm_tiles.cl, field by field.
+/// Mirrors struct Numbers in cl/gemm_epilogue.cl, field by field.
 struct GemmNumbers {
   cl_uint m, n, k, segments, flags;
   cl_uint a_first, b_first, c_first, bias_first, residual_first;
@@ -93,21 +93,23 @@ struct GemmNumbers {
 };
 inline void add_argument(KernelArguments& to, const GemmNumbers& numbers) { to.set(numbers); }
 
-inline void gemm_native(const Context& context, const GemmCall& g) {
-  // Only strides of dimensions of size 1, which are never used, can exceed 32 bits; see check_gemm.
-  const auto narrow = [](std::size_t value) { return static_cast<cl_uint>(value); };
-  const auto first = [&](const Tensor& t) { return t.empty() ? 0 : narrow(t.offset()); };
-  const auto buffer = [&](const Tensor& t) { return t.empty() ? g.c.buffer() : t.buffer(); };
-  const bool is_packed = !g.b_panels.empty();
-  const bool outer = g.a_transposed && g.m > 1;
-  const GemmSplit split = is_packed ? split_packed(context, g)
-                          : outer   ? split_outer(context, g)
-                                    : split_gemm(context, g);
+/// The number of a stride or offset. Only strides of dimensions of size 1, which are never used, can exceed
+/// 32 bits; see check_gemm.
+inline cl_uint narrow(std::size_t value) { return static_cast<cl_uint>(value); }
+/// The buffer of an operand, any if it is empty.
+inline cl_mem operand(const GemmCall& g, const Tensor& t) { return t.empty() ? g.c.buffer() : t.buffer(); }
+/// The index in its buffer of element `offset` of an operand.
+inline cl_uint first_of(const Tensor& t, std::size_t offset = 0) {
+  return (t.empty() ? 0 : narrow(t.offset())) + narrow(offset);
+}
+
+/// The numbers of a product without packing, but for its division into work-groups.
+inline GemmNumbers gemm_numbers(const GemmCall& g) {
   GemmNumbers to{};
   to.m = narrow(g.m), to.n = narrow(g.n), to.k = narrow(g.k);
   to.segments = narrow(g.segments), to.flags = gemm_flags(g);
-  to.a_first = first(g.a), to.b_first = first(g.b), to.c_first = first(g.c) + narrow(g.c_offset);
-  to.bias_first = first(g.bias), to.residual_first = first(g.residual) + narrow(g.residual_offset);
+  to.a_first = first_of(g.a), to.b_first = first_of(g.b), to.c_first = first_of(g.c, g.c_offset);
+  to.bias_first = first_of(g.bias), to.residual_first = first_of(g.residual, g.residual_offset);
   to.a_row = g.a_transposed ? 1 : narrow(g.a_ld), to.a_p = g.a_transposed ? narrow(g.a_ld) : 1;
   to.b_p = g.b_transposed ? 1 : narrow(g.b_ld), to.b_column = g.b_transposed ? narrow(g.b_ld) : 1;
   to.c_row = narrow(g.c_ld), to.residual_row = narrow(g.residual_ld);
@@ -115,6 +117,24 @@ inline void gemm_native(const Context& context, const GemmCall& g) {
   to.c_batch = narrow(g.c_batch_stride);
   for (std::size_t s = 0; s < 4; ++s)
     to.a_segment[s] = narrow(g.a_offset[s]), to.b_segment[s] = narrow(g.b_offset[s]);
+  return to;
+}
+
+/// Launches a kernel of products: the operands, with `b` for B, the numbers, then `more`.
+template <class... More>
+void launch_gemm(const Context& context, const char* file, const char* kernel, const LaunchGrid& grid,
+                 const GemmCall& g, const Tensor& b, const GemmNumbers& numbers, const More&... more) {
+  context.launch(file, kernel, grid, operand(g, g.a), operand(g, b), g.c.buffer(), operand(g, g.bias),
+                 operand(g, g.residual), numbers, more...);
+}
+
+inline void gemm_native(const Context& context, const GemmCall& g) {
+  const bool is_packed = !g.b_panels.empty();
+  const bool outer = g.a_transposed && g.m > 1;
+  const GemmSplit split = is_packed ? split_packed(context, g)
+                          : outer   ? split_outer(context, g)
+                                    : split_gemm(context, g);
+  GemmNumbers to = gemm_numbers(g);
   to.rows_per_group = narrow(split.rows), to.panels_per_group = narrow(split.panels);
   to.panels_at_once = narrow(split.panels_at_once);
   const std::size_t columns = 2 * context.vector_width() * split.panels;
@@ -122,17 +142,15 @@ inline void gemm_native(const Context& context, const GemmCall& g) {
       LaunchGrid::groups((g.n + columns - 1) / columns, (g.m + split.rows - 1) / split.rows, g.batch);
   if (!is_packed) {
     const char* kernel = outer ? "gemm_outer" : "gemm";  // each in a file of its own
-    context.launch(kernel, kernel, grid, buffer(g.a), buffer(g.b), g.c.buffer(), buffer(g.bias),
-                   buffer(g.residual), to);
+    launch_gemm(context, kernel, kernel, grid, g, g.b, to);
     return;
   }
-  to.b_first = first(g.b_panels);
+  to.b_first = first_of(g.b_panels);
   for (std::size_t s = 0; s < g.segments; ++s)
     to.b_segment[s] = narrow(s * gemm_panels(context, g) * g.k * packed_row(context, g.b_in_16_bits));
   if (!g.rectified.empty()) to.flags |= gemm_rectify;
-  context.launch(packed_kernels(g.b_in_16_bits), "gemm_packed", grid, buffer(g.a), g.b_panels.buffer(),
-                 g.c.buffer(), buffer(g.bias), buffer(g.residual), to, buffer(g.rectified),
-                 first(g.rectified) + narrow(g.rectified_offset));
+  launch_gemm(context, packed_kernels(g.b_in_16_bits), "gemm_packed", grid, g, g.b_panels, to,
+              operand(g, g.rectified), first_of(g.rectified, g.rectified_offset));
 }
 
 }  // namespace motiongan::detail

@@ -17,10 +17,11 @@ struct KernelReal {
 /// Global and local sizes of a launch. Local sizes are fixed per kernel: PoCL recompiles for each new one.
 struct LaunchGrid {
   cl_uint dimensions;
-  std::array<std::size_t, 3> global, local;  ///< work-items in all, and in a work-group
+  /// Work-items in all, and in a work-group; local[0] = 0: Context::group().
+  std::array<std::size_t, 3> global, local;
 
-  /// At least `n` work-items in one dimension, in work-groups of 64; kernels skip those past n.
-  static LaunchGrid items(std::size_t n) { return {1, {(n + 63) / 64 * 64, 1, 1}, {64, 1, 1}}; }
+  /// At least `n` work-items in one dimension, in work-groups of up to 64; kernels skip those past n.
+  static LaunchGrid items(std::size_t n) { return {1, {(n + 63) / 64 * 64, 1, 1}, {0, 1, 1}}; }
   /// x * y * z work-groups of one work-item, for kernels that process one tile each.
   static LaunchGrid groups(std::size_t x, std::size_t y = 1, std::size_t z = 1) {
     return {3, {x, y, z}, {1, 1, 1}};

@@ -7,15 +7,12 @@
 #include <string_view>
 #include <unordered_map>
 
-#include "motiongan/core/device.hpp"
 #include "motiongan/core/driver.hpp"
 #include "motiongan/core/kernel_cache.hpp"
+#include "motiongan/core/kernel_form.hpp"
 #include "motiongan/generated/kernels.hpp"
 
 namespace motiongan {
-
-/// Precision of a Context: f32 for training and sampling, f64 for gradient checks.
-enum class Precision { f32, f64 };
 
 /// A kernel that computes an expression of every element: of v and, with two inputs, of w; a and b are
 /// numbers of the launch. It is defined as an `inline const` object beside the operation that needs it, and
@@ -66,14 +63,18 @@ inline std::string kernel_source(std::string_view name) {
 /// Programs and kernels of one context, built on first use and cached.
 class ProgramCache {
  public:
-  ProgramCache(cl_context context, const Device& device, Precision precision, Driver& driver)
-      : context_(context), device_(device), precision_(precision), driver_(driver), kept_(device) {}
+  ProgramCache(cl_context context, const Device& device, const KernelTarget& target, Driver& driver)
+      : context_(context), device_(device), target_(target), driver_(driver), kept_(device) {}
 
-  /// Elements per vector (VW in the kernels): 4, 8 or 16 on a CPU, by its vector registers, 4 elsewhere.
+  /// Whether the kernels are compiled for a CPU's caches and vector registers (FOR_CPU): not in the wide
+  /// form, in which a CPU runs what other devices run.
+  bool for_cpu() const { return device_.is_cpu() && !target_.wide(); }
+
+  /// Elements per vector (VW in the kernels): 4, 8 or 16 for a CPU, by its vector registers, else 4.
   unsigned vector_width() const {
-    unsigned width = device_.is_cpu() ? device_.native_float_width : 4;
+    unsigned width = for_cpu() ? device_.native_float_width : 4;
     width = width >= 16 ? 16 : width >= 8 ? 8 : 4;
-    return precision_ == Precision::f64 && width > 4 ? width / 2 : width;
+    return target_.precision == Precision::f64 && width > 4 ? width / 2 : width;
   }
 
   /// Kernel `name` of cl/<file>.cl. Throws DeviceError, with the build log, if the file does not compile.
@@ -152,15 +153,16 @@ class ProgramCache {
   }
 
   std::string options(const char* standard) const {
-    return concat(standard, "-DREAL=", precision_ == Precision::f64 ? "double" : "float",
-                  precision_ == Precision::f64 ? " -DREAL_IS_DOUBLE" : "", " -DVW=", vector_width(),
-                  device_.is_cpu() ? " -DDEVICE_IS_CPU" : "", can_prefetch() ? " -DCAN_PREFETCH" : "");
+    const bool twofold = target_.precision == Precision::f64;
+    return concat(standard, "-DREAL=", twofold ? "double" : "float", twofold ? " -DREAL_IS_DOUBLE" : "",
+                  " -DVW=", vector_width(), for_cpu() ? " -DFOR_CPU" : "",
+                  can_prefetch() ? " -DCAN_PREFETCH" : "",
+                  target_.wide() ? concat(" -DWIDE -DGROUP=", target_.group) : "");
   }
 
   /// Whether the compiler knows __builtin_prefetch: others abort the process, such as Mesa's.
   bool can_prefetch() const {
-    return device_.is_cpu() &&
-           (is_pocl(device_.platform_name) || device_.platform_name == "Intel(R) OpenCL");
+    return for_cpu() && (is_pocl(device_.platform_name) || device_.platform_name == "Intel(R) OpenCL");
   }
 
   cl_int compile(cl_program program, const char* standard) const {
@@ -184,7 +186,7 @@ class ProgramCache {
 
   cl_context context_;
   Device device_;
-  Precision precision_;
+  KernelTarget target_;
   Driver& driver_;
   KernelCache kept_;
   const char* standard_ = "-cl-std=CL1.2 ";

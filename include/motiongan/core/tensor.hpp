@@ -73,6 +73,8 @@ class Tensor {
   const Context& context() const { return *context_; }
   const Shape& shape() const { return shape_; }
   std::size_t size() const { return size_; }
+  /// The size of the elements; 0 if empty.
+  std::size_t bytes() const { return empty() ? 0 : size_ * context_->real_size(); }
   /// The size of axis `i`.
   std::size_t dim(std::size_t i) const { return shape_.at(i); }
   /// The number of axes.
@@ -178,6 +180,7 @@ class Indices {
 
   bool empty() const { return storage_ == nullptr; }
   std::size_t size() const { return size_; }
+  std::size_t bytes() const { return size_ * sizeof(cl_int); }
   const Context& context() const { return *context_; }
   cl_mem buffer() const { return storage_->buffer(); }
   /// Uploads without waiting for the queue. Throws Error if the number of values is not size().
@@ -248,6 +251,11 @@ inline void add_argument(KernelArguments& to, const Indices& indices) { to.set(i
 struct At {
   const Tensor& tensor;
   std::size_t first;
+  /// The elements that the kernel touches, for ContextStatistics::bytes_touched; unless set, all that follow.
+  std::size_t count = std::numeric_limits<std::size_t>::max();
+  std::size_t bytes() const {
+    return std::min(count, tensor.size() - std::min(first, tensor.size())) * tensor.context().real_size();
+  }
   std::string describe() const { return concat(tensor.describe(), "+", first); }
 };
 inline void add_argument(KernelArguments& to, const At& at) {

@@ -171,9 +171,10 @@ class AttentionRollout {
     if (inner_ > 0) {
       parts_to_ = Tensor(context_, {frames, batch, 3 * inner_});
       place(parts_, other_, parts_to_, 0);
-      // A sample's frames are split into pieces, so that a small batch still keeps all cores busy.
+      // A sample's frames are split into pieces, so that a small batch still keeps all cores busy; in the
+      // wide form, in which a work-group shares a frame, into single ones.
       const std::size_t groups = 4 * context_.device().compute_units;
-      pieces_ = std::clamp<std::size_t>((groups + batch - 1) / batch, 1, frames);
+      pieces_ = context_.wide() ? frames : std::clamp<std::size_t>((groups + batch - 1) / batch, 1, frames);
       scratch_ = Tensor(context_, {pieces_, batch, frames + inner_});
     }
     place(second_[1], between_, rectified_, batch * hidden);

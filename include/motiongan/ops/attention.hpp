@@ -87,10 +87,12 @@ inline void attend_frames(const Tensor& all, const Tensor& scratch, const Tensor
                           const AttentionOutput& output, const Tensor& out, const At& rectified,
                           std::size_t pieces) {
   if (x.size() == 0) return;
-  const std::size_t frames = x.dim(0), batch = x.dim(1), rows = (frames + pieces - 1) / pieces;
-  x.context().launch("attention", "attend_frames", LaunchGrid::groups(batch, (frames + rows - 1) / rows), all,
-                     scratch, x, output.weight, output.bias, out, rectified, frames, batch, all.dim(2) / 3,
-                     x.dim(2), rows);
+  const std::size_t frames = x.dim(0), batch = x.dim(1), rows = (frames + pieces - 1) / pieces,
+                    blocks = (frames + rows - 1) / rows;
+  x.context().launch(
+      "attention", "attend_frames",
+      x.context().wide() ? x.context().groups(batch, blocks) : LaunchGrid::groups(batch, blocks), all,
+      scratch, x, output.weight, output.bias, out, rectified, frames, batch, all.dim(2) / 3, x.dim(2), rows);
 }
 
 }  // namespace detail

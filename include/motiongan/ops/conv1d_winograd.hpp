@@ -63,7 +63,7 @@ inline TapPlan plan_taps(const Convolution& c, ConvolutionPart part) {
   // With fewer channels, the transforms cost more than the products that they save (measured).
   const std::size_t enough_channels = part == ConvolutionPart::value ? 64 : 96;
   if (std::min(c.in(), c.out()) < enough_channels || frames_in == 0 || frames_out == 0 || c.rows() == 0 ||
-      choose_engine(c.x.context(), GemmEngine::automatic) != GemmEngine::native)
+      !packs_weights(c.x.context()))
     return plan;
   Taps order;
   order.swap(plan.others);

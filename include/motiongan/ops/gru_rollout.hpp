@@ -90,9 +90,10 @@ inline GruTrace gru_rollout_forward(const Tensor& x_gates, const Tensor& each, c
     recur.a_offset[0] = t.state_at(i);
     gemm(context, recur);
     context.launch("gru", "gru_cell", t.cells(),
-                   At{i < t.given ? x_gates : x, i < t.given ? t.gates_at(i) : 0}, s,
-                   At{t.states, t.state_at(i)}, At{t.kept, keep ? 4 * t.state_at(i) : 0},
-                   static_cast<cl_uint>(keep), At{t.states, t.state_at(i + 1)}, t.batch, t.k);
+                   At{i < t.given ? x_gates : x, i < t.given ? t.gates_at(i) : 0, t.gates_at(1)}, s,
+                   At{t.states, t.state_at(i), t.state_at(1)},
+                   At{t.kept, keep ? 4 * t.state_at(i) : 0, keep ? 4 * t.state_at(1) : 0},
+                   static_cast<cl_uint>(keep), At{t.states, t.state_at(i + 1), t.state_at(1)}, t.batch, t.k);
     if (i + 1 < t.given) continue;
     const std::size_t j = i + 1 - t.given;
     move.a_offset[0] = t.state_at(i + 1);
@@ -130,9 +131,9 @@ inline std::vector<Tensor> gru_rollout_backward(const GruTrace& t, const Node& s
       move.a_offset[0] = t.pose_at(j);
       gemm(context, move);
     }
-    context.launch("gru", "gru_cell_backward", t.cells(), At{t.kept, 4 * t.state_at(i)},
-                   At{t.states, t.state_at(i)}, dh, At{dx, t.gates_at(i)}, At{ds, t.gates_at(i)}, t.batch,
-                   t.k);
+    context.launch("gru", "gru_cell_backward", t.cells(), At{t.kept, 4 * t.state_at(i), 4 * t.state_at(1)},
+                   At{t.states, t.state_at(i), t.state_at(1)}, dh, At{dx, t.gates_at(i), t.gates_at(1)},
+                   At{ds, t.gates_at(i), t.gates_at(1)}, t.batch, t.k);
     if (i == 0) break;  // the initial state is a constant
     recur.a_offset[0] = t.gates_at(i);
     gemm(context, recur);

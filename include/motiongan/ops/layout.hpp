@@ -12,8 +12,8 @@ inline void copy_runs(const Tensor& x, std::size_t x_first, std::size_t x_stride
   if (outer == 0 || run == 0) return;
   const Context& context = x.context();
   context.launch("layout", "copy_runs", LaunchGrid::items(outer * vectors(context, run)),
-                 x.view(x_first, {x.size() - x_first}), x_stride,
-                 out.view(out_first, {out.size() - out_first}), out_stride, outer, run);
+                 At{x, x_first, outer * run}, x_stride, At{out, out_first, outer * run}, out_stride, outer,
+                 run);
 }
 
 /// Mirrors struct Parts in cl/layout.cl, field by field.
@@ -39,6 +39,7 @@ inline void copy_parts(std::span<const CopyPart> parts, const Tensor& out, std::
   for (std::size_t first = 0; first < parts.size() && outer > 0; first += CopyNumbers::most) {
     CopyNumbers numbers;
     std::array<cl_mem, CopyNumbers::most> buffers{};
+    std::size_t copied = 0;
     buffers.fill(parts[first].from.buffer());
     for (const CopyPart& part : parts.subspan(first, std::min(CopyNumbers::most, parts.size() - first))) {
       const std::size_t run = part.from.size() / outer, i = numbers.count;
@@ -46,11 +47,13 @@ inline void copy_parts(std::span<const CopyPart> parts, const Tensor& out, std::
       numbers.x[i] = narrow(part.from.offset()), numbers.at[i] = narrow(part.at);
       numbers.run[i] = narrow(run), numbers.item[i] = numbers.items;
       numbers.items += narrow(vectors(context, run));
+      copied += part.from.size();
       buffers[numbers.count++] = part.from.buffer();
     }
     context.launch("layout", "copy_parts", LaunchGrid::items(outer * numbers.items), buffers[0], buffers[1],
-                   buffers[2], buffers[3], buffers[4], buffers[5], buffers[6], buffers[7], out, numbers,
-                   stride, outer);
+                   buffers[2], buffers[3], buffers[4], buffers[5], buffers[6], buffers[7], At{out, 0, copied},
+                   numbers, stride, outer);
+    context.count_bytes(static_cast<double>(copied * context.real_size()));  // of the parts
   }
 }
 

@@ -1,5 +1,5 @@
 // One step of an LSTM layer, for weights that are used in many steps: matrix product and cell, in one kernel
-// on the native gemm() backend.
+// where weights are packed.
 #pragma once
 #include "motiongan/core/gemm.hpp"
 #include "motiongan/ops/reduce.hpp"
@@ -10,6 +10,7 @@ namespace motiongan::detail {
 template <class T>
 struct Maybe {
   const T& value;
+  std::size_t bytes() const { return value.bytes(); }
   std::string describe() const { return value.empty() ? "none" : value.describe(); }
 };
 inline void add_argument(KernelArguments& to, const Maybe<Tensor>& tensor) {
@@ -37,13 +38,14 @@ struct LstmStep {
 };
 
 /// One LSTM layer: gates = rows W^T + extra (order i, f, g, o), then c and h. The constructor packs W
-/// [4k, in], on request in 16 bits (see GemmCall); later changes of W have no effect on the native backend.
+/// [4k, in], on request in 16 bits (see GemmCall); later changes of W have no effect where weights are
+/// packed.
 class LstmStepper {
  public:
   LstmStepper() = default;
   LstmStepper(const Context& context, const Tensor& weight, bool in_16_bits = false)
       : weight_(weight), k_(weight.dim(0) / 4), in_(weight.dim(1)), kernels_(packed_kernels(in_16_bits)) {
-    if (choose_engine(context, GemmEngine::automatic) != GemmEngine::native) return;
+    if (!packs_weights(context)) return;
     const std::size_t panels = 2 * vectors(context, k_);
     packed_ = packed_once(weight, {in_16_bits ? 5U : 4U, in_, k_}, [&] {
       Tensor packed = packed_panels(context, panels, in_, in_16_bits);
@@ -57,16 +59,20 @@ class LstmStepper {
   void step(const LstmStep& s) const {
     if (s.batch == 0) return;
     const Context& context = weight_.context();
-    const std::size_t extra_row = s.extra_is_bias ? 0 : 4 * k_;
+    const std::size_t extra_row = s.extra_is_bias ? 0 : 4 * k_, cells = s.batch * k_;
+    const auto part = [](const At& at, std::size_t count) { return At{at.tensor, at.first, count}; };
+    const At c_before = part(s.c_before, cells), c = part(s.c, cells), h = part(s.h, cells),
+             gates = part(s.gates, 4 * cells);
     if (!packed_.empty()) {
       const std::size_t units = vectors(context, k_), wanted = 8 * context.device().compute_units;
       const std::size_t row_groups = std::max<std::size_t>(1, wanted / units), tile = 6;
       const std::size_t rows = ((s.batch + row_groups - 1) / row_groups + tile - 1) / tile * tile;
       context.count_gemm_flops(2.0 * static_cast<double>(s.batch * 4 * k_ * in_));
       context.launch(kernels_, "gemm_lstm_cell", LaunchGrid::groups(units, (s.batch + rows - 1) / rows),
-                     s.rows, s.width, in_, packed_, s.extra, extra_row, s.c_before, s.h, s.width, s.c,
-                     s.gates, static_cast<cl_uint>(s.keep_gates), Maybe<Indices>{s.lengths}, s.number,
-                     s.batch, k_, rows);
+                     part(s.rows, s.batch * in_), s.width, in_, packed_,
+                     part(s.extra, s.extra_is_bias ? 4 * k_ : 4 * cells), extra_row, c_before, h, s.width, c,
+                     gates, static_cast<cl_uint>(s.keep_gates), Maybe<Indices>{s.lengths}, s.number, s.batch,
+                     k_, rows);
       return;
     }
     GemmCall call{.m = s.batch, .n = 4 * k_, .k = in_, .a = s.rows.tensor, .b = weight_, .c = s.gates.tensor};
@@ -77,8 +83,9 @@ class LstmStepper {
     else
       call.residual = s.extra.tensor, call.residual_offset = s.extra.first, call.residual_ld = 4 * k_;
     gemm(context, call);
-    context.launch("lstm", "lstm_cell", LaunchGrid::items(s.batch * vectors(context, k_)), s.gates,
-                   s.c_before, s.rows, Maybe<Indices>{s.lengths}, s.number, s.h, s.width, s.c, s.batch, k_);
+    context.launch("lstm", "lstm_cell", LaunchGrid::items(s.batch * vectors(context, k_)), gates, c_before,
+                   part(s.rows, s.lengths.empty() ? 0 : cells), Maybe<Indices>{s.lengths}, s.number, h,
+                   s.width, c, s.batch, k_);
   }
 
  private:

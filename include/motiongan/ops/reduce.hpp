@@ -1,6 +1,7 @@
 // Reductions over an axis, broadcasting (their adjoint), and operations built on them: means, pooling,
 // softmax. Internally a tensor is viewed as [outer, count, inner] around the axis.
 #pragma once
+#include "motiongan/core/rows.hpp"
 #include "motiongan/ops/elementwise.hpp"
 #include "motiongan/ops/reshape.hpp"
 
@@ -46,7 +47,15 @@ inline Tensor sum_axis_value(const Tensor& x, std::size_t outer, std::size_t cou
     return out;
   }
   if (inner == 1 && count > 1) {
-    context.launch("reduce", "sum_rows", LaunchGrid::items(outer), x, out, outer, count, KernelReal{scale});
+    constexpr std::size_t chunk = 4096;
+    const std::size_t pieces = context.wide() ? (count + chunk - 1) / chunk : 1;
+    if (pieces > 1) {  // one work-group would leave the device idle
+      const Tensor partial(context, {outer, pieces});
+      launch_rows(context, "sum_pieces", outer * pieces, chunk, x, partial, outer, count, chunk);
+      launch_rows(context, "sum_rows", outer, pieces, partial, out, outer, pieces, KernelReal{scale});
+    } else {
+      launch_rows(context, "sum_rows", outer, count, x, out, outer, count, KernelReal{scale});
+    }
     return out;
   }
   // Long sums over few columns run in two stages to give every core work; the order stays fixed.
@@ -227,11 +236,11 @@ inline Var relu_of_sum(const Var& big, const Var& small) {
 }
 
 namespace detail {
-/// A function of every row of `view`, [rows, n], by a kernel of cl/softmax.cl.
+/// A function of every row of `view`, [rows, n], by a kernel of cl/rows.cl.
 inline Tensor row_function(const char* kernel, const Tensor& x, const AxisView& view) {
   Tensor value(x.context(), x.shape());
-  const LaunchGrid grid = LaunchGrid::items(view.count > 0 ? view.outer : 0);
-  x.context().launch("softmax", kernel, grid, x, value, view.outer, view.count);
+  launch_rows(x.context(), kernel, view.count > 0 ? view.outer : 0, view.count, x, value, view.outer,
+              view.count);
   return value;
 }
 }  // namespace detail

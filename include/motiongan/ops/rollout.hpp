@@ -131,10 +131,12 @@ inline std::vector<Tensor> rollout_backward(const RolloutTrace& trace, const Nod
   const cl_mem none = nullptr;
   const auto cell = [&](const Tensor& activated, const Tensor& c, std::size_t h, const Tensor& dc,
                         const Tensor& gradient, std::size_t t) {
-    context.launch("lstm", "lstm_cell_backward", s.cells(context), At{activated, s.gates_at(t)},
-                   At{c, s.state_at(t)}, At{c, s.state_at(t - 1)}, At{rows, h}, s.width(), none,
-                   std::size_t{0}, none, t, std::size_t{0}, none, std::size_t{0}, dc,
-                   At{gradient, s.gates_at(t)}, none, std::size_t{0}, none, std::size_t{0}, batch, k);
+    const std::size_t cells = batch * k;
+    context.launch("lstm", "lstm_cell_backward", s.cells(context), At{activated, s.gates_at(t), 4 * cells},
+                   At{c, s.state_at(t), cells}, At{c, s.state_at(t - 1), cells}, At{rows, h, cells},
+                   s.width(), none, std::size_t{0}, none, t, std::size_t{0}, none, std::size_t{0}, dc,
+                   At{gradient, s.gates_at(t), 4 * cells}, none, std::size_t{0}, none, std::size_t{0}, batch,
+                   k);
   };
   for (std::size_t t = frames; t-- > 1;) {
     if (t >= s.given) {
@@ -142,7 +144,8 @@ inline std::vector<Tensor> rollout_backward(const RolloutTrace& trace, const Nod
       move.c_offset = s.h1_at(t);
       gemm(context, move);
       context.launch("layout", "add_rows", LaunchGrid::items(batch * vectors(context, s.dof)),
-                     At{rows, s.pose_at(t)}, s.width(), At{rows, s.pose_at(t - 1)}, s.width(), batch, s.dof);
+                     At{rows, s.pose_at(t), batch * s.dof}, s.width(),
+                     At{rows, s.pose_at(t - 1), batch * s.dof}, s.width(), batch, s.dof);
     }
     cell(trace.gates1, trace.c1, s.h1_at(t), dc1, gates1, t);
     second.a_offset[0] = s.gates_at(t);

@@ -139,7 +139,7 @@ inline void winograd_multiply(const Tensor& v, const Tensor& u, const WinogradPr
                     panels = (product.out + columns - 1) / columns;
   // Rows in multiples of a register tile; with few of them, enough groups for all cores.
   constexpr std::size_t tile = 12;
-  const std::size_t most = context.device().is_cpu() ? 4 * tile : tile;  // ROWS_AT_ONCE in cl/winograd.cl
+  const std::size_t most = context.for_cpu() ? 4 * tile : tile;  // ROWS_AT_ONCE in cl/winograd.cl
   const std::size_t wanted = 8 * context.device().compute_units;
   const std::size_t shared = (rows * panels / wanted + tile - 1) / tile * tile;
   const std::size_t rows_per_group = std::clamp(shared, tile, most);
@@ -158,7 +158,7 @@ inline void winograd_multiply(const Tensor& v, const Tensor& u, const WinogradPr
                flag(!product.rectified.empty(), gemm_rectify),
       .rows_per_group = narrow(rows_per_group)};
   const auto at = [&](const Tensor& t, std::size_t first) {  // what is empty is not read
-    return t.empty() ? At{y.tensor, 0} : At{t, first};
+    return t.empty() ? At{y.tensor, 0, 0} : At{t, first};
   };
   context.count_gemm_flops(2.0 * static_cast<double>(v.size()) * static_cast<double>(product.out));
   context.launch("winograd", "winograd_multiply",

@@ -49,13 +49,13 @@ class Sgd : public Optimizer {
   }
 
  private:
-  static constexpr std::size_t chunk = 4096;  // elements summed by one work-item
+  static constexpr std::size_t chunk = 4096;  // elements summed by one team
 
   void update() override {
     Tensor square = chunks_;
     if (options_.clip_norm > 0) {
-      context().launch("sgd", "squares_of_chunks", LaunchGrid::items(chunks_.size()), gradients(), chunks_,
-                       gradients().size(), chunk);
+      detail::launch_rows(context(), "squares_of_chunks", chunks_.size(), chunk, gradients(), chunks_,
+                          gradients().size(), chunk);
       square = detail::sum_axis_value(chunks_, 1, chunks_.size(), 1, 1, {1});
     }
     context().launch("sgd", "sgd", detail::vector_grid(values()), values(), gradients(), square,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "motiongan/core/gemm.hpp"
+#include "motiongan/core/rows.hpp"
 #include "motiongan/search/distance.hpp"
 
 namespace motiongan {
@@ -134,10 +135,11 @@ class SearchWindows {
     Chunk chunk{count, Indices(context_, starts), Tensor(context_, {frequencies_, count, 2 * columns}),
                 Tensor(context_, {count, reach() + 1, 4}), squares};
     if (dims > 0) chunk.track = Tensor::from(context_, {rows, dims}, part(frames_->track, dims));
-    context_.launch("search", "search_squares", LaunchGrid::items(rows), plain, squares, rows, columns);
-    context_.launch("search", "search_overlaps", LaunchGrid::items(count), squares, chunk.track, chunk.starts,
-                    chunk.own, count, format_.frames, reach(), dims, std::size_t{layout_.turned},
-                    KernelReal{layout_.yaw_scale});
+    detail::launch_rows(context_, "squares_of_rows", rows, columns, plain, squares, rows, columns);
+    const std::size_t overlaps = context_.wide() ? count * (reach() + 1) : count;  // work-items
+    context_.launch("search", "search_overlaps", LaunchGrid::items(overlaps), squares, chunk.track,
+                    chunk.starts, chunk.own, count, format_.frames, reach(), dims,
+                    std::size_t{layout_.turned}, KernelReal{layout_.yaw_scale});
     const std::size_t pieces = (columns + context_.vector_width() - 1) / context_.vector_width();
     context_.launch("search", "search_spectra", LaunchGrid::items(count * pieces), plain, chunk.starts,
                     table_, chunk.spectra, count, format_.frames, columns, frequencies_);
@@ -216,8 +218,9 @@ class SearchWindows {
     product.a_batch_stride = chunk.windows * 2 * columns, product.b_batch_stride = 2 * columns * 2 * lanes;
     product.c_batch_stride = 2 * lanes;
     gemm(context_, product);
+    const std::size_t teams = chunk.windows * lanes / context_.vector_width();
     context_.launch("search", "search_nearest",
-                    LaunchGrid::items(chunk.windows * lanes / context_.vector_width()), products, chunk.own,
+                    context_.wide() ? context_.groups(teams) : LaunchGrid::items(teams), products, chunk.own,
                     chunk.track, chunk.starts, turns_, query.squares, query.track, query.sums, nearest,
                     shifts, chunk.windows, format_.frames, frequencies_, reach(), lanes, format_.dof(),
                     layout_.track.size(), std::size_t{layout_.turned});
