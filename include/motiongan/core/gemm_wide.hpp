@@ -1,5 +1,7 @@
 // The native backend of gemm() in the wide form: the kernels of cl/gemm_wide.cl.
 #pragma once
+#include <bit>
+
 #include "motiongan/core/gemm_native.hpp"
 
 namespace motiongan::detail {
