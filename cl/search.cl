@@ -70,12 +70,13 @@ kernel void search_overlaps(global const real* squares, uint squares0, global co
   out[0] = late, out[1] = early, out[2] = cos(angle), out[3] = sin(angle);
 }
 #else
-/// Sums for larger s are updated from those for s - 1. Work-items: windows.
-kernel void search_overlaps(global const real* squares, uint squares0, global const real* track, uint track0,
-                            global const int* starts, global real* own, uint own0, uint windows, uint frames,
-                            uint reach, uint dims, uint turned, real yaw_scale) {
-  const uint w = get_global_id(0);
-  if (w >= windows) return;
+/// Sums for larger s are updated from those for s - 1. Work-groups of one item: windows. A driver that makes
+/// vectors of the items of a group, as Intel's does, would give the last ones another sine.
+__attribute__((reqd_work_group_size(1, 1, 1))) kernel void search_overlaps(
+    global const real* squares, uint squares0, global const real* track, uint track0,
+    global const int* starts, global real* own, uint own0, uint windows, uint frames, uint reach, uint dims,
+    uint turned, real yaw_scale) {
+  const uint w = get_group_id(0);
   global const real* square = squares + squares0 + starts[w];
   global const real* place = track + track0 + (size_t)starts[w] * dims;
   global real* out = own + own0 + (size_t)w * (reach + 1) * 4;

@@ -47,9 +47,12 @@ TEST_CASE("narrow for CPU devices, wide for all others, unless MOTIONGAN_KERNELS
     const Setting setting("MOTIONGAN_KERNELS", "");
     CHECK(kernel_form(device_of(CL_DEVICE_TYPE_CPU)) == KernelForm::narrow);
     CHECK(kernel_form(device_of(CL_DEVICE_TYPE_GPU)) == KernelForm::wide);
+    Device llvmpipe = device_of(CL_DEVICE_TYPE_CPU);
+    llvmpipe.platform_name = "rusticl";
+    CHECK(kernel_form(llvmpipe) == KernelForm::wide);
     CHECK(kernel_form(device_of(CL_DEVICE_TYPE_ACCELERATOR)) == KernelForm::wide);
     const Context context;
-    CHECK(context.wide() == !context.device().is_cpu());
+    CHECK(context.wide() == (kernel_form(context.device()) == KernelForm::wide));
     CHECK(context.counting().wide() == context.wide());
   }
   for (const bool wide : {false, true}) {

@@ -18,14 +18,15 @@ enum class Precision { f32, f64 };
 enum class KernelForm { narrow, wide };
 
 /// The form that MOTIONGAN_KERNELS ("narrow" or "wide") names, else narrow for CPU devices and wide for all
-/// others. Throws Error for another value.
+/// others, and for Mesa's llvmpipe, whose version 22.3 crashes in the narrow form's convolutions and makes
+/// wrong sums of several segments. Throws Error for another value.
 inline KernelForm kernel_form(const Device& device) {
   const char* text = std::getenv("MOTIONGAN_KERNELS");
   const std::string_view name = text ? text : "";
   if (name == "narrow") return KernelForm::narrow;
   if (name == "wide") return KernelForm::wide;
   require(name.empty(), "MOTIONGAN_KERNELS is \"", name, "\", expected narrow or wide; or leave it unset");
-  return device.is_cpu() ? KernelForm::narrow : KernelForm::wide;
+  return device.is_cpu() && device.platform_name != "rusticl" ? KernelForm::narrow : KernelForm::wide;
 }
 
 namespace detail {

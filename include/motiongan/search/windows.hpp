@@ -136,10 +136,11 @@ class SearchWindows {
                 Tensor(context_, {count, reach() + 1, 4}), squares};
     if (dims > 0) chunk.track = Tensor::from(context_, {rows, dims}, part(frames_->track, dims));
     detail::launch_rows(context_, "squares_of_rows", rows, columns, plain, squares, rows, columns);
-    const std::size_t overlaps = context_.wide() ? count * (reach() + 1) : count;  // work-items
-    context_.launch("search", "search_overlaps", LaunchGrid::items(overlaps), squares, chunk.track,
-                    chunk.starts, chunk.own, count, format_.frames, reach(), dims,
-                    std::size_t{layout_.turned}, KernelReal{layout_.yaw_scale});
+    const LaunchGrid overlaps =
+        context_.wide() ? LaunchGrid::items(count * (reach() + 1)) : LaunchGrid::groups(count);
+    context_.launch("search", "search_overlaps", overlaps, squares, chunk.track, chunk.starts, chunk.own,
+                    count, format_.frames, reach(), dims, std::size_t{layout_.turned},
+                    KernelReal{layout_.yaw_scale});
     const std::size_t pieces = (columns + context_.vector_width() - 1) / context_.vector_width();
     context_.launch("search", "search_spectra", LaunchGrid::items(count * pieces), plain, chunk.starts,
                     table_, chunk.spectra, count, format_.frames, columns, frequencies_);
