@@ -8,11 +8,9 @@
 
 int main(int argc, char** argv) {
   doctest::Context tests(argc, argv);
-  const motiongan::Device device = motiongan::testing::default_device();
-  if (!device.name.empty() && !device.has_double) {
+  if (const std::string& why = motiongan::testing::why_no_double(); !why.empty()) {
     tests.addFilter("test-suite-exclude", "double");
-    std::printf("skipped: test cases that need double precision, which %s does not have\n",
-                device.name.c_str());
+    std::printf("skipped: test cases that need double precision, which %s\n", why.c_str());
   }
   const int result = tests.run();
   motiongan::finish_all_contexts();

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdlib>
 #include <motiongan/core/context.hpp>
+#include <string>
 #include <vector>
 
 namespace motiongan::testing {
@@ -17,10 +18,20 @@ inline Device default_device() {
   }
 }
 
-/// Both precisions, or the one that the device has.
+/// Why nothing is tested in double: the device has none, or MOTIONGAN_TEST_SINGLE is set, as for a simulator
+/// to which the precision makes no difference but time. Empty if it is tested.
+inline const std::string& why_no_double() {
+  static const std::string why = [] {
+    if (std::getenv("MOTIONGAN_TEST_SINGLE")) return std::string("MOTIONGAN_TEST_SINGLE leaves out");
+    const Device device = default_device();
+    return device.name.empty() || device.has_double ? std::string() : device.name + " does not have";
+  }();
+  return why;
+}
+
+/// Both precisions, or the one that is tested.
 inline std::vector<Precision> precisions() {
-  static const bool has_double = default_device().has_double;
-  return has_double ? std::vector{Precision::f32, Precision::f64} : std::vector{Precision::f32};
+  return why_no_double().empty() ? std::vector{Precision::f32, Precision::f64} : std::vector{Precision::f32};
 }
 
 /// A context shared by the tests of a program. Throws DeviceError if the device has no double, and it is
