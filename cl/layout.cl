@@ -35,10 +35,14 @@ kernel void copy_parts(global const real* x0, global const real* x1, global cons
     x = x##p, from = parts.x[p], to = parts.at[p]; \
     run = parts.run[p], first = parts.item[p];     \
   }
-  TAKE_PART(1)
-  TAKE_PART(2)
-  TAKE_PART(3) TAKE_PART(4) TAKE_PART(5) TAKE_PART(6) TAKE_PART(7) const uint r = (item - first) * VW,
-                                                                              left = run - r;
+  TAKE_PART(1);
+  TAKE_PART(2);
+  TAKE_PART(3);
+  TAKE_PART(4);
+  TAKE_PART(5);
+  TAKE_PART(6);
+  TAKE_PART(7);
+  const uint r = (item - first) * VW, left = run - r;
   store_some(load_some(x + from + o * run + r, left), out + out0 + o * out_stride + to + r, left);
 }
 

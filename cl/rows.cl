@@ -2,8 +2,8 @@
 #include "team.cl"
 
 /// out[r] = scale * sum of x[r, :].
-TEAM_KERNEL void sum_rows(global const real* x, uint x0, global real* out, uint out0, uint rows, uint count,
-                          real scale) {
+TEAM_SIZE kernel void sum_rows(global const real* x, uint x0, global real* out, uint out0, uint rows,
+                               uint count, real scale) {
   TEAM_MEMORY(memory);
   const uint r = TEAM;
   if (r >= rows) return;
@@ -15,8 +15,8 @@ TEAM_KERNEL void sum_rows(global const real* x, uint x0, global real* out, uint 
 }
 
 /// out[r, s] = sum of x[r, j] over j in [s*chunk, (s+1)*chunk). Teams: rows times pieces.
-TEAM_KERNEL void sum_pieces(global const real* x, uint x0, global real* out, uint out0, uint rows, uint count,
-                            uint chunk) {
+TEAM_SIZE kernel void sum_pieces(global const real* x, uint x0, global real* out, uint out0, uint rows,
+                                 uint count, uint chunk) {
   TEAM_MEMORY(memory);
   const uint pieces = (count + chunk - 1) / chunk, at = TEAM;
   if (at >= rows * pieces) return;
@@ -29,8 +29,8 @@ TEAM_KERNEL void sum_pieces(global const real* x, uint x0, global real* out, uin
 }
 
 /// out[s] = sum of squares of x in [s*chunk, (s+1)*chunk). Teams: chunks.
-TEAM_KERNEL void squares_of_chunks(global const real* x, uint x0, global real* out, uint out0, uint n,
-                                   uint chunk) {
+TEAM_SIZE kernel void squares_of_chunks(global const real* x, uint x0, global real* out, uint out0, uint n,
+                                        uint chunk) {
   TEAM_MEMORY(memory);
   const uint s = TEAM, first = s * chunk;
   if (first >= n) return;
@@ -45,8 +45,8 @@ TEAM_KERNEL void squares_of_chunks(global const real* x, uint x0, global real* o
 }
 
 /// out[r] = sum over the columns of x[r]^2.
-TEAM_KERNEL void squares_of_rows(global const real* x, uint x0, global real* out, uint out0, uint rows,
-                                 uint columns) {
+TEAM_SIZE kernel void squares_of_rows(global const real* x, uint x0, global real* out, uint out0, uint rows,
+                                      uint columns) {
   TEAM_MEMORY(memory);
   const uint r = TEAM;
   if (r >= rows) return;
@@ -61,8 +61,8 @@ TEAM_KERNEL void squares_of_rows(global const real* x, uint x0, global real* out
 }
 
 /// out[r, :] = softmax of x[r, :]; the maximum is subtracted first to avoid overflow.
-TEAM_KERNEL void softmax_rows(global const real* x, uint x0, global real* out, uint out0, uint rows,
-                              uint count) {
+TEAM_SIZE kernel void softmax_rows(global const real* x, uint x0, global real* out, uint out0, uint rows,
+                                   uint count) {
   TEAM_MEMORY(memory);
   const uint r = TEAM;
   if (r >= rows) return;
@@ -81,8 +81,8 @@ TEAM_KERNEL void softmax_rows(global const real* x, uint x0, global real* out, u
 }
 
 /// out[r, :] = log softmax of x[r, :].
-TEAM_KERNEL void log_softmax_rows(global const real* x, uint x0, global real* out, uint out0, uint rows,
-                                  uint count) {
+TEAM_SIZE kernel void log_softmax_rows(global const real* x, uint x0, global real* out, uint out0, uint rows,
+                                       uint count) {
   TEAM_MEMORY(memory);
   const uint r = TEAM;
   if (r >= rows) return;

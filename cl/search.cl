@@ -150,13 +150,15 @@ static inline realv track_products(global const real* track, global const real* 
 /// [reach + 1, frames, dims, lanes], starting at frame s; other_sums [reach + 1, 2, dims, lanes], over the
 /// overlapping frames: for shift s from frame 0, for -s from frame s; nearest and shifts [windows, lanes].
 /// Teams: windows times blocks of VW hypotheses; the items of a team share the shifts.
-TEAM_KERNEL void search_nearest(global const real* products, uint products0, global const real* own,
-                                uint own0, global const real* track, uint track0, global const int* starts,
-                                global const real* turns, uint turns0, global const real* other_squares,
-                                uint other_squares0, global const real* other_track, uint other_track0,
-                                global const real* other_sums, uint other_sums0, global real* nearest,
-                                uint nearest0, global real* shifts, uint shifts0, uint windows, uint frames,
-                                uint frequencies, uint reach, uint lanes, uint dof, uint dims, uint turned) {
+TEAM_SIZE kernel void search_nearest(global const real* products, uint products0, global const real* own,
+                                     uint own0, global const real* track, uint track0,
+                                     global const int* starts, global const real* turns, uint turns0,
+                                     global const real* other_squares, uint other_squares0,
+                                     global const real* other_track, uint other_track0,
+                                     global const real* other_sums, uint other_sums0, global real* nearest,
+                                     uint nearest0, global real* shifts, uint shifts0, uint windows,
+                                     uint frames, uint frequencies, uint reach, uint lanes, uint dof,
+                                     uint dims, uint turned) {
 #ifdef TEAM_IS_GROUP
   local realv bests[GROUP], places[GROUP];
 #endif

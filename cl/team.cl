@@ -2,7 +2,7 @@
 // work-group: item ITEM of ITEMS takes every ITEMS-th element or vector, and what the items found is combined
 // in local memory, in an order that depends on nothing but GROUP.
 #ifdef TEAM_IS_GROUP
-#define TEAM_KERNEL __attribute__((reqd_work_group_size(GROUP, 1, 1))) kernel
+#define TEAM_SIZE __attribute__((reqd_work_group_size(GROUP, 1, 1)))
 #define TEAM get_group_id(0)
 #define ITEM ((uint)get_local_id(0))
 #define ITEMS GROUP
@@ -26,7 +26,7 @@
 DEFINE_TEAM_FUNCTION(team_sum, ADD)
 DEFINE_TEAM_FUNCTION(team_max, fmax)
 #else
-#define TEAM_KERNEL kernel
+#define TEAM_SIZE
 #define TEAM get_global_id(0)
 #define ITEM 0
 #define ITEMS 1

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cstdio>
+#include <cstdlib>
 
 #include "support/precision.hpp"
 
@@ -14,5 +15,8 @@ int main(int argc, char** argv) {
   }
   const int result = tests.run();
   motiongan::finish_all_contexts();
+  // A simulator may be gone before the contexts in static variables, and end the process with an error.
+  std::fflush(nullptr);
+  if (std::getenv("MOTIONGAN_TEST_SINGLE")) std::_Exit(result);
   return result;
 }

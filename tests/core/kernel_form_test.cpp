@@ -24,7 +24,7 @@ Device device_of(cl_device_type type, std::size_t max_group = 1024) {
 
 /// The names of the kernels in a file and what it includes.
 std::set<std::string> kernels_of(const char* file) {
-  static const std::regex pattern("(?:kernel|TEAM_KERNEL) void (\\w+)\\(");
+  static const std::regex pattern("kernel void (\\w+)\\(");
   const std::string source = detail::kernel_source(file);
   std::set<std::string> names;
   for (std::sregex_iterator i(source.begin(), source.end(), pattern), end; i != end; ++i)

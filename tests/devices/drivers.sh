@@ -51,6 +51,7 @@ use_driver() {
       only_driver oclgrind /usr/lib/oclgrind/liboclgrind-rt-icd.so
       # Not OCLGRIND_UNINITIALIZED: it ends the program at LLVM's instruction `freeze`.
       export OCLGRIND_DATA_RACES=1 OCLGRIND_CHECK_API=1 OCLGRIND_MAX_ERRORS=5 MOTIONGAN_TEST_SINGLE=1
+      only_tests='^(core|ops|optim|nn|search|golden|autograd|networks|sample|models)_'
       ;;
     *) export MOTIONGAN_DEVICE=$1 ;;
   esac

@@ -18,12 +18,13 @@
 namespace motiongan::detail {
 
 /// A folder with the binaries of programs: MOTIONGAN_CACHE_DIR (empty: none), else
-/// $XDG_CACHE_HOME/motiongan or ~/.cache/motiongan. PoCL keeps its own. What cannot be read or written is
-/// as if it were not there: the kernels are then compiled.
+/// $XDG_CACHE_HOME/motiongan or ~/.cache/motiongan. PoCL keeps its own, and Oclgrind's heap is damaged by
+/// programs from binaries. What cannot be read or written is as if it were not there: the kernels are then
+/// compiled.
 class KernelCache {
  public:
   explicit KernelCache(const Device& device) {
-    if (is_pocl(device.platform_name)) return;
+    if (is_pocl(device.platform_name) || device.platform_name == "Oclgrind") return;
     folder_ = chosen_folder();
     if (folder_.empty()) return;
     std::string driver;
