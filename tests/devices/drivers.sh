@@ -101,13 +101,13 @@ driver_summary() {
 test_on() {
   (
     use_driver "$1"
-    local out=$build/devices/$1 omit start=$SECONDS limit=600
+    local out=$build/devices/$1 omit only=${2:-${only_tests:-}} start=$SECONDS limit=600
     mkdir -p "$out"
     omit=$(left_out "$1")
     [ "$1" != oclgrind ] || limit=60
     "$build/motiongan" devices >"$out/device.txt" 2>&1 || fail "the driver $1 has no usable device: $(cat "$out/device.txt")"
     grep '^\*  ' "$out/device.txt" >&2
-    ctest --test-dir "$build" --no-tests=error --timeout "$limit" -j "$jobs" ${2:+-R "$2"} ${omit:+-E "$omit"} >"$out/results.txt" 2>&1 || true
+    ctest --test-dir "$build" --no-tests=error --timeout "$limit" -j "$jobs" ${only:+-R "$only"} ${omit:+-E "$omit"} >"$out/results.txt" 2>&1 || true
     cp "$build/Testing/Temporary/LastTest.log" "$out/log.txt"
     driver_summary "$1" $((SECONDS - start)) "$out/results.txt" "$out/log.txt"
   )
