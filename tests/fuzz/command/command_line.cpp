@@ -17,8 +17,8 @@ namespace {
 class OnlyNamedVerbs {
  public:
   explicit OnlyNamedVerbs(const std::vector<std::string>& arguments) : all_(command::Verb::all()) {
-    std::erase_if(command::Verb::all(), [&](const auto& verb) {
-      const std::string last = verb.first.substr(verb.first.rfind(' ') + 1);
+    std::erase_if(command::Verb::all(), [&](const command::Verb& verb) {
+      const std::string last = verb.name.substr(verb.name.rfind(' ') + 1);
       return std::find(arguments.begin(), arguments.end(), last) == arguments.end();
     });
   }
@@ -27,7 +27,7 @@ class OnlyNamedVerbs {
   ~OnlyNamedVerbs() { command::Verb::all() = all_; }
 
  private:
-  std::vector<std::pair<std::string, command::Verb::Add>> all_;
+  std::vector<command::Verb> all_;
 };
 
 }  // namespace
