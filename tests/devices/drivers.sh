@@ -124,6 +124,7 @@ run_matrix() {
   for driver in "$@"; do
     say "$driver"
     test_on "$driver" >>"$table" || failed=$((failed + 1))
+    grep -q "^| $driver |" "$table" || printf '| %s | could not be run | | | | | | |\n' "$driver" >>"$table"
     tail -n 1 "$table" >&2
   done
   cat "$table"
