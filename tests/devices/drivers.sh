@@ -4,6 +4,8 @@
 # tab, the reason.
 
 drivers=(pocl intel rusticl oclgrind)
+# With slow drivers: what uses the device, but for the command's tests, which train again and again.
+slow_driver_tests='^(core|ops|optim|nn|search|golden|autograd|networks|sample|models|direct|experiments|train)_'
 
 # only_driver NAME LIBRARY: makes this the only driver that the OpenCL loader finds.
 only_driver() {
@@ -45,13 +47,14 @@ use_driver() {
       need_packages mesa-opencl-icd
       only_driver rusticl libRusticlOpenCL.so.1
       export RUSTICL_ENABLE=llvmpipe
+      only_tests=$slow_driver_tests
       ;;
     oclgrind)
       need_packages oclgrind
       only_driver oclgrind /usr/lib/oclgrind/liboclgrind-rt-icd.so
       # Not OCLGRIND_UNINITIALIZED: it ends the program at LLVM's instruction `freeze`.
       export OCLGRIND_DATA_RACES=1 OCLGRIND_CHECK_API=1 OCLGRIND_MAX_ERRORS=5 MOTIONGAN_TEST_SINGLE=1
-      only_tests='^(core|ops|optim|nn|search|golden|autograd|networks|sample|models)_'
+      only_tests=$slow_driver_tests
       ;;
     *) export MOTIONGAN_DEVICE=$1 ;;
   esac
@@ -104,7 +107,7 @@ test_on() {
     local out=$build/devices/$1 omit only=${2:-${only_tests:-}} start=$SECONDS limit=600
     mkdir -p "$out"
     omit=$(left_out "$1")
-    [ "$1" != oclgrind ] || limit=60
+    [ -z "${only_tests:-}" ] || limit=90
     "$build/motiongan" devices >"$out/device.txt" 2>&1 || fail "the driver $1 has no usable device: $(cat "$out/device.txt")"
     grep '^\*  ' "$out/device.txt" >&2
     ctest --test-dir "$build" --no-tests=error --timeout "$limit" -j "$jobs" ${only:+-R "$only"} ${omit:+-E "$omit"} >"$out/results.txt" 2>&1 || true
