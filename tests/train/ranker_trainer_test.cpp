@@ -66,7 +66,7 @@ TEST_CASE("both rankers learn to distinguish actions") {
   }
 }
 
-TEST_CASE("a window has the same scores as motion and as normalised poses") {
+TEST_CASE("a window has the same scores as motion and as normalised poses" * doctest::test_suite("double")) {
   const motion::Dataset& data = small_data();
   const Context context({.precision = Precision::f64});
   const Ranker ranker(context, data.format, {.kind = RankerKind::rnn, .hidden = 8});
