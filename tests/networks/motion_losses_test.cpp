@@ -103,7 +103,7 @@ TEST_CASE("cross-entropy by hand, and for large logits" * doctest::test_suite("d
              "label 2 of sample 1, expected less than 2"));
 }
 
-TEST_CASE("a skeleton without bones is rejected") {
+TEST_CASE("a skeleton without bones is rejected" * doctest::test_suite("double")) {
   motion::PositionFormat format = leg();
   motion::Skeleton point;
   point.joints = {joint("root", -1, 0)};

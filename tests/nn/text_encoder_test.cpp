@@ -119,7 +119,7 @@ TEST_CASE("padding affects neither value nor gradient") {
   CHECK(run(7) == reference);
 }
 
-TEST_CASE("first and second derivatives of the whole encoder") {
+TEST_CASE("first and second derivatives of the whole encoder" * doctest::test_suite("double")) {
   const Context& context = testing::double_context();
   Initializer init(context, 9);
   TextEncoder encoder(init, vocabulary, 3);

@@ -107,14 +107,14 @@ TEST_CASE("lengths of an LSTM's samples" * doctest::test_suite("double")) {
   CHECK(message({1}) == "lstm_layer: 1 lengths for 2 samples");
 }
 
-TEST_CASE("first frames of noise, one per sample") {
+TEST_CASE("first frames of noise, one per sample" * doctest::test_suite("double")) {
   CHECK(says(message_of([] {
                random_normal(double_context(), {}, 2, 3, 4, indices({1, 2}));
              }),
              "random_normal: 2 first frames for 3 samples"));
 }
 
-TEST_CASE("labels") {
+TEST_CASE("labels" * doctest::test_suite("double")) {
   CHECK(says(message_of([] {
                one_hot(double_context(), std::vector<std::size_t>{0, 3}, 3);
              }),
