@@ -4,8 +4,12 @@
 # tab, the reason.
 
 drivers=(pocl intel rusticl oclgrind)
-# With slow drivers: what uses the device, but for the command's tests, which train again and again.
+# With a slow driver: what uses the device, but for the command's tests, which train again and again.
 slow_driver_tests='^(core|ops|optim|nn|search|golden|autograd|networks|sample|models|direct|experiments|train)_'
+# Of those, what is small enough for a simulator.
+simulator_tests='^(core_(bf16|context|tensor|kernel_form|kernel_cache|kernel_files|device|fields)|optim_(sgd|adam|optimizer|weight_mean)|'
+simulator_tests+='ops_(layout|indices|empty|winograd|attention|derivatives)|nn_(frozen|state_dict)|search_index|autograd_(grad|graph)|'
+simulator_tests+='networks_(bones|motion_losses))$'
 
 # only_driver NAME LIBRARY: makes this the only driver that the OpenCL loader finds.
 only_driver() {
@@ -54,7 +58,7 @@ use_driver() {
       only_driver oclgrind /usr/lib/oclgrind/liboclgrind-rt-icd.so
       # Not OCLGRIND_UNINITIALIZED: it ends the program at LLVM's instruction `freeze`.
       export OCLGRIND_DATA_RACES=1 OCLGRIND_CHECK_API=1 OCLGRIND_MAX_ERRORS=5 MOTIONGAN_TEST_SINGLE=1
-      only_tests=$slow_driver_tests
+      only_tests=$simulator_tests
       ;;
     *) export MOTIONGAN_DEVICE=$1 ;;
   esac
