@@ -7,7 +7,6 @@
 #endif
 
 #include <fcntl.h>
-#include <locale.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
 #include <sys/random.h>
@@ -18,6 +17,7 @@
 #endif
 
 #include <cerrno>
+#include <clocale>
 #include <csignal>
 #include <cstddef>
 #include <cstdio>
