@@ -21,7 +21,7 @@ motion::Motion Cleaning::apply(motion::Motion motion, std::size_t given) const {
 }
 
 namespace {
-constexpr const char* group = "Clean-up";
+constexpr const char* clean_group = "Clean-up";
 }
 
 void add_clean_choice(CLI::App& verb, Cleaning& cleaning, const std::string& without) {
@@ -33,16 +33,16 @@ void add_clean_choice(CLI::App& verb, Cleaning& cleaning, const std::string& wit
       ->delimiter(',')
       ->check(CLI::IsMember({"feet", "smooth"}))
       ->type_name("feet,smooth")
-      ->group(group);
+      ->group(clean_group);
   verb.add_option("--cutoff", cleaning.options.cutoff, "movements faster than that are filtered, in Hz")
       ->check(positive())
       ->capture_default_str()
-      ->group(group);
+      ->group(clean_group);
 }
 
 void add_clean_options(CLI::App& verb, Cleaning& cleaning, const std::string& without) {
   add_clean_choice(verb, cleaning, without);
-  add_body_options(verb, cleaning.options.unit_metres, cleaning.options.foot_joints, group);
+  add_body_options(verb, cleaning.options.unit_metres, cleaning.options.foot_joints, clean_group);
 }
 
 }  // namespace motiongan::command

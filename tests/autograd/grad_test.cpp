@@ -9,6 +9,8 @@
 #include "../support/check_grads.hpp"
 #include "../support/messages.hpp"
 
+namespace grad_test {
+
 using namespace motiongan;
 using testing::double_context;
 
@@ -236,3 +238,5 @@ TEST_CASE("gradients of two runs are equal bit for bit") {
   CHECK(run() == first);
   CHECK(testing::dot({first[1].begin(), first[1].end()}, {first[1].begin(), first[1].end()}) > 0);
 }
+
+}  // namespace grad_test

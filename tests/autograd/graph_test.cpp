@@ -6,6 +6,8 @@
 
 #include "../support/check_grads.hpp"
 
+namespace graph_test {
+
 using namespace motiongan;
 
 namespace {
@@ -96,3 +98,5 @@ TEST_CASE("a failed backward pass leaks nothing") {
   CHECK(context.statistics().bytes_in_use == before);
   CHECK((x * x).requires_grad());  // recording is on as before
 }
+
+}  // namespace graph_test

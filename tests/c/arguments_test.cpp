@@ -13,6 +13,8 @@
 #include "../support/messages.hpp"
 #include "calls.hpp"
 
+namespace arguments_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -226,3 +228,5 @@ TEST_CASE("arbitrary arguments give a status and harm nothing") {
   }
   CHECK(steps < 1000);
 }
+
+}  // namespace arguments_test

@@ -11,6 +11,8 @@
 
 #include "calls.hpp"
 
+namespace interface_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 using motion::Motion;
@@ -261,3 +263,5 @@ TEST_CASE("a stream outlives the handles that it was made from") {
   REQUIRE_OK(motiongan_stream_step(stream));
   CHECK(values_of(stream, joints).rotations.size() == 4 * joints);
 }
+
+}  // namespace interface_test

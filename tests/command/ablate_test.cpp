@@ -9,6 +9,8 @@
 #include "command.hpp"
 #include "motiongan/train/csv_log.hpp"
 
+namespace ablate_test {
+
 namespace {
 
 const std::string small =
@@ -146,3 +148,5 @@ TEST_CASE("a comparison that cannot be is refused before it begins") {
   CHECK_FALSE(fs::exists("cmp/full"));
   CHECK(call(small).status > 1);  // no --save: usage
 }
+
+}  // namespace ablate_test

@@ -10,6 +10,8 @@
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/formats/read_motion.hpp"
 
+namespace any_file_test {
+
 using namespace motiongan::motion;
 
 namespace {
@@ -227,3 +229,5 @@ TEST_CASE("info and view take every kind of file") {
   CHECK(call("info rate.bvh").has("--fps 30"));
   CHECK(call("info rate.bvh --fps 30").has("60 at 30 per second (2 s)"));
 }
+
+}  // namespace any_file_test

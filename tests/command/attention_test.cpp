@@ -7,6 +7,8 @@
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/train/csv_log.hpp"
 
+namespace attention_test {
+
 using motiongan::motion::read_bvh;
 
 namespace {
@@ -196,3 +198,5 @@ TEST_CASE("the LSTM baseline, labels from a file, and noise") {
   refused("train attention clips", "there are no labels");
   refused("train attention clips --labels absent.tsv", "absent.tsv");
 }
+
+}  // namespace attention_test

@@ -3,6 +3,8 @@
 
 #include "command.hpp"
 
+namespace captions_test {
+
 namespace {
 
 const std::string data = " --frames 8 --rate 8 --hidden 8 --batch 2 --critic-steps 1 --iterations 2 ";
@@ -117,3 +119,5 @@ TEST_CASE("prompt files") {
   write_file("empty.txt", "# nothing\n");
   refused("generate run --prompts empty.txt", "empty.txt has no prompts; write one per line");
 }
+
+}  // namespace captions_test

@@ -5,6 +5,8 @@
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/motion/motion.hpp"
 
+namespace complete_test {
+
 using namespace motiongan::motion;
 
 namespace {
@@ -110,3 +112,5 @@ TEST_CASE("complete, from a model of two iterations") {
     refused("cnn" + prior + "--text walk", "--generator rnn");
   }
 }
+
+}  // namespace complete_test

@@ -3,6 +3,8 @@
 
 #include "command.hpp"
 
+namespace demo_test {
+
 TEST_CASE("the demo writes what it promises, again and again, and spares other people's folders") {
   const TestFolder folder;
   for (int i = 0; i < 2; ++i) {
@@ -55,3 +57,5 @@ TEST_CASE("help and usage") {
   CHECK(call("synth out --clips 0").status == 1);
   CHECK(call("synth out --seconds -1").status > 100);
 }
+
+}  // namespace demo_test

@@ -3,6 +3,8 @@
 
 #include "command.hpp"
 
+namespace devices_test {
+
 namespace {
 
 Said call_with(const std::string& environment, const std::string& arguments) {
@@ -63,3 +65,5 @@ TEST_CASE("buffers that fail end a training with an error; it resumes to the sam
   CHECK(call(resume).status == 0);
   CHECK(bytes_of("run/checkpoint.safetensors") == bytes_of("whole/checkpoint.safetensors"));
 }
+
+}  // namespace devices_test

@@ -10,6 +10,8 @@
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/motion/motion.hpp"
 
+namespace direct_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -202,3 +204,5 @@ TEST_CASE("inbetween fills a gap, for models of either kind, and leaves the clip
   refused("--to clips/walk_000.bvh --seconds 0.2", "has no frames between");
   refused("--to clips/walk_000.bvh --place here", "keep");
 }
+
+}  // namespace direct_test

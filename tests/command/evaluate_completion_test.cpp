@@ -6,6 +6,8 @@
 #include "../support/expmap_files.hpp"
 #include "command.hpp"
 
+namespace evaluate_completion_test {
+
 namespace {
 
 const std::string tiny_models =
@@ -133,3 +135,5 @@ TEST_CASE("what cannot be evaluated is refused before anything is trained") {
   CHECK(call("evaluate completion --models zero").status > 1);  // usage: no folder
   CHECK_FALSE(fs::exists("out/dvgan/checkpoint.safetensors"));
 }
+
+}  // namespace evaluate_completion_test

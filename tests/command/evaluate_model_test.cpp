@@ -5,6 +5,8 @@
 
 #include "command.hpp"
 
+namespace evaluate_model_test {
+
 namespace {
 
 nlohmann::json json_of(const fs::path& file) { return nlohmann::json::parse(bytes_of(file)); }
@@ -130,3 +132,5 @@ TEST_CASE("evaluate model: the drift of an RNN generator") {
   CHECK(said.has("paper, CMU: rnn, cnn critic dense"));
   CHECK(json_of("a.json").at("model").at("drift").at("seconds").get<double>() == doctest::Approx(5));
 }
+
+}  // namespace evaluate_model_test

@@ -13,6 +13,8 @@
 #include "motiongan/motion/clean_stream.hpp"
 #include "motiongan/motion/motion.hpp"
 
+namespace generate_test {
+
 using namespace motiongan::motion;
 
 namespace {
@@ -270,3 +272,5 @@ TEST_CASE("an RNN model makes any number of frames") {
     CHECK_MESSAGE(said.has("--generator rnn"), said.text);
   }
 }
+
+}  // namespace generate_test

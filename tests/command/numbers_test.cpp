@@ -5,6 +5,8 @@
 
 #include "command.hpp"
 
+namespace numbers_test {
+
 namespace {
 
 /// The command must fail with this message and leave the folder as it was.
@@ -119,3 +121,5 @@ TEST_CASE("a run that is resumed says what is left") {
   CHECK(bytes_of("run/checkpoint.safetensors") == before);
   CHECK(std::distance(fs::directory_iterator("run"), fs::directory_iterator()) == 6);
 }
+
+}  // namespace numbers_test

@@ -3,6 +3,8 @@
 
 #include "command.hpp"
 
+namespace options_test {
+
 TEST_CASE("docs/options.md is what the command prints (./dev docs writes it anew)") {
   const TestFolder folder;
   const Said said = call("options");
@@ -11,3 +13,5 @@ TEST_CASE("docs/options.md is what the command prints (./dev docs writes it anew
   CHECK(said.has("| `--validation` | `validation` | dense | dense, mod2, final |"));
   CHECK(said.text == bytes_of(std::string(MOTIONGAN_SOURCE_DIR) + "/docs/options.md"));
 }
+
+}  // namespace options_test

@@ -7,6 +7,8 @@
 #include "command.hpp"
 #include "motiongan/formats/text_file.hpp"
 
+namespace outputs_test {
+
 using namespace motiongan;
 using namespace motiongan::command;
 using motiongan::testing::message_of;
@@ -136,3 +138,5 @@ TEST_CASE("a link that leads to itself and a pipe are named, and end no call une
   CHECK(pipe.status == 1);
   CHECK(pipe.has("x.bvh is a named pipe, expected a regular file"));
 }
+
+}  // namespace outputs_test

@@ -6,6 +6,8 @@
 
 #include "command.hpp"
 
+namespace ranker_test {
+
 namespace {
 
 const std::string data = " --procedural 34 --frames 8 --rate 4 --split-seed 3 ";
@@ -120,3 +122,5 @@ TEST_CASE("comparisons that cannot be are refused before anything is trained") {
   CHECK(call("ablate dvgan" + data + "--save c --iterations 0").has("give --minutes or --iterations"));
   CHECK_FALSE(fs::exists("c"));
 }
+
+}  // namespace ranker_test

@@ -5,6 +5,8 @@
 #include "../support/expmap_files.hpp"
 #include "command.hpp"
 
+namespace ranks_test {
+
 namespace {
 
 const std::string training =
@@ -177,3 +179,5 @@ TEST_CASE("mpirun: a rank is killed; the job ends, and goes on with another numb
   REQUIRE(call(training + "--save whole --iterations " + more).status == 0);
   CHECK(bytes_of("run/generator.safetensors") == bytes_of("whole/generator.safetensors"));
 }
+
+}  // namespace ranks_test

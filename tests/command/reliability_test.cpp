@@ -6,6 +6,8 @@
 
 #include "command.hpp"
 
+namespace reliability_test {
+
 using motiongan::read_run_record;
 
 namespace {
@@ -120,3 +122,5 @@ TEST_CASE("a table can go to standard output and to a pipe") {
   CHECK(bytes_of("copy").size() > 100);
   CHECK(fs::is_fifo("pipe"));
 }
+
+}  // namespace reliability_test

@@ -9,6 +9,8 @@
 
 #include "../support/other_bodies.hpp"
 
+namespace retarget_test {
+
 using namespace motiongan::motion;
 using namespace motiongan::testing;
 
@@ -131,3 +133,5 @@ TEST_CASE("FBX files are written and read as the same motion") {
   std::ofstream("bad.fbx") << "no FBX";
   CHECK(call("info bad.fbx").has("bad.fbx cannot be read as FBX"));
 }
+
+}  // namespace retarget_test

@@ -7,6 +7,8 @@
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/motion/motion.hpp"
 
+namespace search_test {
+
 using namespace motiongan::motion;
 
 TEST_CASE("search, with a model of two iterations") {
@@ -89,3 +91,5 @@ TEST_CASE("search, with a model of two iterations") {
     CHECK(unknown.has("the model never saw \"swim\""));
   }
 }
+
+}  // namespace search_test

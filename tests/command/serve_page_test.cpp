@@ -10,6 +10,8 @@
 #include "motiongan/motion/motion.hpp"
 #include "server.hpp"
 
+namespace serve_page_test {
+
 using namespace motiongan::motion;
 
 namespace {
@@ -249,3 +251,5 @@ TEST_CASE("the page draws what is made, in Chromium") {
   CHECK(page.becomes_true("people.size === 2 && document.querySelectorAll('.row').length === 2"));
   CHECK(page.value("byId('notes').className") == "");  // no error
 }
+
+}  // namespace serve_page_test

@@ -9,6 +9,8 @@
 #include "motiongan/view/figure.hpp"
 #include "server.hpp"
 
+namespace serve_test {
+
 using namespace motiongan::motion;
 
 namespace {
@@ -230,3 +232,5 @@ TEST_CASE("what is malformed is refused, and changes nothing") {
   CHECK(server.end(SIGINT) == 130);
   CHECK(send_raw(server.port, "GET / HTTP/1.1\r\n\r\n").empty());
 }
+
+}  // namespace serve_test

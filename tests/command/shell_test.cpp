@@ -5,6 +5,8 @@
 
 #include "command.hpp"
 
+namespace shell_test {
+
 using motiongan::command::shell_quoted;
 using motiongan::command::shell_word;
 
@@ -52,3 +54,5 @@ TEST_CASE("a shell gives back every text") {
   }
   CHECK_FALSE(fs::exists("made"));
 }
+
+}  // namespace shell_test

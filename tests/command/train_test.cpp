@@ -7,6 +7,8 @@
 #include "motiongan/io/safetensors.hpp"
 #include "motiongan/train/csv_log.hpp"
 
+namespace train_test {
+
 namespace {
 
 std::string checkpoint(const std::string& folder) { return bytes_of(folder + "/checkpoint.safetensors"); }
@@ -174,3 +176,5 @@ TEST_CASE("a run of an earlier version is described, generates and resumes") {
   CHECK_MESSAGE(more.status == 0, more.text);
   CHECK(more.has("finished after 6116 of 6116 iterations"));
 }
+
+}  // namespace train_test

@@ -4,6 +4,8 @@
 #include "command.hpp"
 #include "motiongan/io/safetensors.hpp"
 
+namespace training_aids_test {
+
 TEST_CASE("a training writes previews, and its log is plotted") {
   const TestFolder folder;
   REQUIRE(call("synth clips --clips 6 --seconds 5").status == 0);
@@ -102,3 +104,5 @@ TEST_CASE("words that the model never saw: the nearest descriptions are named, -
   CHECK(!fs::exists("strict"));
   CHECK(call("generate run --text zzz --out made").has("its descriptions are, for example: \""));
 }
+
+}  // namespace training_aids_test

@@ -8,6 +8,8 @@
 
 #include "../support/precision.hpp"
 
+namespace bf16_test {
+
 using namespace motiongan;
 
 namespace {
@@ -55,3 +57,5 @@ TEST_CASE("part of a tensor is rounded, and nothing around it") {
   const std::vector<float> rounded = x.to_host();
   for (std::size_t i = 0; i < 100; ++i) CHECK(rounded[i] == (i >= 3 && i < 40 ? 1.0f : 1.001f));
 }
+
+}  // namespace bf16_test

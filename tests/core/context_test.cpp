@@ -7,6 +7,8 @@
 #include "../support/messages.hpp"
 #include "../support/setting.hpp"
 
+namespace context_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -220,3 +222,5 @@ TEST_CASE("statistics count the bytes of the arguments, in a context that only c
     CHECK(product() == 0);
   }
 }
+
+}  // namespace context_test

@@ -3,6 +3,8 @@
 
 #include <motiongan/core/device.hpp>
 
+namespace device_test {
+
 using namespace motiongan;
 
 namespace {
@@ -147,3 +149,5 @@ TEST_CASE("the devices of this machine have a name, memory and a vector width") 
     CHECK(choose_device(here, device.name).name == device.name);
   }
 }
+
+}  // namespace device_test

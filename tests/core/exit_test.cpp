@@ -9,6 +9,8 @@
 #include <motiongan/ops/reduce.hpp>
 #include <string>
 
+namespace exit_test {
+
 using namespace motiongan;
 
 namespace {
@@ -34,3 +36,5 @@ TEST_CASE("work that nobody waits for") {
   for (int i = 0; i < 3; ++i) sum(tanh(x) * x + affine(x, 2));
   CHECK(global_context().statistics().launches > 6);
 }
+
+}  // namespace exit_test

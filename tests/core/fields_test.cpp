@@ -5,6 +5,8 @@
 
 #include "../support/messages.hpp"
 
+namespace fields_test {
+
 using namespace motiongan;
 using motiongan::testing::message_of;
 using motiongan::testing::says;
@@ -119,3 +121,5 @@ TEST_CASE("options on the command line are called by their keys, unless they say
   CHECK(fields.find("not_saved")->option().empty());
   CHECK(fields.find("nothing") == nullptr);
 }
+
+}  // namespace fields_test

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <motiongan/core/bf16.hpp>
 
+namespace gemm_test {
+
 using namespace motiongan;
 using namespace motiongan::test;
 
@@ -352,3 +354,5 @@ TEST_CASE("native: a transposed A with long rows, which is transposed first") {
       check(precision, plan, GemmEngine::native, random);
     }
 }
+
+}  // namespace gemm_test

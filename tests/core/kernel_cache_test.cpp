@@ -7,6 +7,8 @@
 #include "../support/folders.hpp"
 #include "../support/setting.hpp"
 
+namespace kernel_cache_test {
+
 using namespace motiongan;
 using detail::KernelCache;
 
@@ -78,3 +80,5 @@ TEST_CASE("without a folder that can be written, and for PoCL, nothing is kept")
   pocl.platform_name = "Portable Computing Language";
   CHECK_FALSE(KernelCache(pocl));
 }
+
+}  // namespace kernel_cache_test

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+namespace kernel_files_test {
+
 namespace {
 
 /// The text without comments, in which a continued line is one line.
@@ -114,3 +116,5 @@ TEST_CASE("the check sees open functions, in macros too, and none elsewhere") {
   CHECK(check_file("kernel void k(global real* x) { for (uint i = 0; i < 2; ++i) { x[i] = 0; } }").empty());
   CHECK(check_file("constant int table[] = {1, 2};\n#define STEP(i) if (n > i) { run(i); }").empty());
 }
+
+}  // namespace kernel_files_test

@@ -10,6 +10,8 @@
 #include "../support/setting.hpp"
 #include "gemm_problem.hpp"
 
+namespace kernel_form_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -188,3 +190,5 @@ TEST_CASE("a row alone has the bits of the row among others, in either form") {
     }
   }
 }
+
+}  // namespace kernel_form_test

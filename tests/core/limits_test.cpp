@@ -8,6 +8,8 @@
 
 #include "../support/messages.hpp"
 
+namespace limits_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -119,3 +121,5 @@ TEST_CASE("a matrix product does not wrap around") {
   CHECK(refused([&](GemmCall& g) { g.residual = t, g.residual_offset = huge - 5, g.residual_ld = 4; }));
   CHECK(refused([&](GemmCall& g) { g.rectified = t, g.rectified_offset = huge - 3; }));
 }
+
+}  // namespace limits_test

@@ -4,6 +4,8 @@
 #include <motiongan/core/random.hpp>
 #include <numbers>
 
+namespace random_test {
+
 using namespace motiongan;
 
 namespace {
@@ -191,3 +193,5 @@ TEST_CASE("per-sample keys give the values of random_normal") {
   }
   CHECK_THROWS_AS(fill_normal_each(all, RandomStream::noise, 0, Indices(context, 11)), Error);
 }
+
+}  // namespace random_test

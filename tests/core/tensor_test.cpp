@@ -5,6 +5,8 @@
 #include <motiongan/ops/layout.hpp>
 #include <numeric>
 
+namespace tensor_test {
+
 using namespace motiongan;
 
 namespace {
@@ -116,3 +118,5 @@ TEST_CASE("copies of all lengths and offsets") {
     CHECK(to.to_host<double>() == expected);
   }
 }
+
+}  // namespace tensor_test

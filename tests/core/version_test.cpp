@@ -4,6 +4,8 @@
 #include <motiongan/version.hpp>
 #include <string>
 
+namespace version_test {
+
 #if MOTIONGAN_VERSION < MOTIONGAN_MAKE_VERSION(0, 1, 0)
 #error "MOTIONGAN_VERSION cannot be compared"
 #endif
@@ -19,3 +21,5 @@ TEST_CASE("the text of the version is made of its parts") {
     text += (text.empty() ? "" : ".") + std::to_string(part);
   CHECK(text == MOTIONGAN_VERSION_STRING);
 }
+
+}  // namespace version_test

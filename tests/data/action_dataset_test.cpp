@@ -12,6 +12,8 @@
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/procedural/procedural.hpp"
 
+namespace action_dataset_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 namespace fs = std::filesystem;
@@ -257,3 +259,5 @@ TEST_CASE("from a folder: BVH, CSV and NPY with labels from a file, folders or n
                        Error);
   CHECK_THROWS_AS((void)ActionDataset::from_folder(folder.path / "none", options), Error);
 }
+
+}  // namespace action_dataset_test

@@ -9,6 +9,8 @@
 
 #include "motiongan/data/action_split.hpp"
 
+namespace action_labels_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -116,3 +118,5 @@ TEST_CASE("splits keep subjects whole") {
                        Error);
   CHECK_THROWS_AS((void)split_off_subjects(clips, {"a", "b", "c", "d"}), Error);
 }
+
+}  // namespace action_labels_test

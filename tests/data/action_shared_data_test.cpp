@@ -10,6 +10,8 @@
 
 #include "motiongan/data/action_dataset.hpp"
 
+namespace action_shared_data_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 namespace fs = std::filesystem;
@@ -90,3 +92,5 @@ TEST_CASE("Bandai-Namco clips: the hips travel below a resting joint") {
       if (entry.path().stem().string().ends_with("_normal_001")) check_round_trip(entry.path(), 0.3);
   }
 }
+
+}  // namespace action_shared_data_test

@@ -10,6 +10,8 @@
 
 #include "motiongan/data/captions.hpp"
 
+namespace caption_files_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 using namespace std::string_literals;
@@ -218,3 +220,5 @@ TEST_CASE("pipes and links that lead to themselves are no captions, and are name
   CHECK_THROWS_WITH_AS(read_caption_file(folder.path / "huge.json"),
                        doctest::Contains("huge.json has 268435457 bytes, expected at most 268435456"), Error);
 }
+
+}  // namespace caption_files_test

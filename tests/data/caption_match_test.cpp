@@ -8,6 +8,8 @@
 #include "motiongan/data/caption_match.hpp"
 #include "motiongan/formats/clip_files.hpp"
 
+namespace caption_match_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 namespace fs = std::filesystem;
@@ -73,3 +75,5 @@ TEST_CASE("captions of no clip and clips without a caption are listed") {
                         "the first clip is 'run'; expected a clip's file name"),
       Error);
 }
+
+}  // namespace caption_match_test

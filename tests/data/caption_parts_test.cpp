@@ -15,6 +15,8 @@
 #include "../support/walking_clips.hpp"
 #include "motiongan/formats/bvh.hpp"
 
+namespace caption_parts_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 namespace fs = std::filesystem;
@@ -170,3 +172,5 @@ TEST_CASE("a caption file for motions in memory") {
   CHECK(data.captions.unmatched == Texts{"'other' (line 3)"});
   CHECK(data.captions.without.size() == 2);
 }
+
+}  // namespace caption_parts_test

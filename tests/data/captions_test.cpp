@@ -8,6 +8,8 @@
 
 #include "motiongan/data/nearest_descriptions.hpp"
 
+namespace captions_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -110,3 +112,5 @@ TEST_CASE("nearest descriptions share words or their beginnings") {
   CHECK(nearest_descriptions(known, "zzz").empty());
   CHECK(nearest_descriptions({}, "walk").empty());
 }
+
+}  // namespace captions_test

@@ -14,6 +14,8 @@
 #include "motiongan/data/dataset.hpp"
 #include "motiongan/formats/bvh.hpp"
 
+namespace clip_agreement_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 namespace fs = std::filesystem;
@@ -169,3 +171,5 @@ TEST_CASE("all bad files are listed, or skipped") {
   for (const char* name : {"a", "b", "c"}) fs::remove(folder.path / "walk" / (std::string(name) + ".bvh"));
   check_both(folder, skip, "3 of 3 files cannot be read:");
 }
+
+}  // namespace clip_agreement_test

@@ -12,6 +12,8 @@
 #include "motiongan/data/dataset.hpp"
 #include "motiongan/formats/bvh.hpp"
 
+namespace dataset_files_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 namespace fs = std::filesystem;
@@ -109,3 +111,5 @@ TEST_CASE("folders of BVH files") {
   CHECK_THROWS_WITH_AS(Dataset::from_bvh(folder.path, eight_at(4)),
                        doctest::Contains("bad.bvh:2:1: found 'NOISE'"), Error);
 }
+
+}  // namespace dataset_files_test

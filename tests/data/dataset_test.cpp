@@ -9,6 +9,8 @@
 
 #include "../support/walking_clips.hpp"
 
+namespace dataset_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -207,3 +209,5 @@ TEST_CASE("the position of the travelling joint is kept, whichever clip shows it
   CHECK(data.format.layout.root() == 1);
   CHECK(data.format.layout.name(data.format.layout.position_dim()) == "Hips.position.x");
 }
+
+}  // namespace dataset_test

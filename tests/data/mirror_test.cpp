@@ -10,6 +10,8 @@
 #include "motiongan/data/dataset.hpp"
 #include "motiongan/procedural/procedural.hpp"
 
+namespace mirror_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -96,3 +98,5 @@ TEST_CASE("a data set with mirrored and stretched training clips") {
     CHECK_THROWS_WITH_AS(Dataset::from_motions(motions, options), doctest::Contains("stretch"), Error);
   }
 }
+
+}  // namespace mirror_test

@@ -9,6 +9,8 @@
 #include "../support/messages.hpp"
 #include "motiongan/data/motion_format_json.hpp"
 
+namespace motion_format_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -152,3 +154,5 @@ TEST_CASE("errors in the JSON name the member") {
   CHECK_THROWS_WITH_AS(io::motion_format_from_json(nlohmann::json::array()), doctest::Contains("JSON object"),
                        Error);
 }
+
+}  // namespace motion_format_test

@@ -9,6 +9,8 @@
 
 #include "motiongan/data/normalizer.hpp"
 
+namespace pose_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -110,3 +112,5 @@ TEST_CASE("sizes that do not match are errors") {
   CHECK_THROWS_AS(Normalizer::fit({}, 3), Error);
   CHECK_THROWS_AS(Normalizer::fit(seven, 0), Error);
 }
+
+}  // namespace pose_test

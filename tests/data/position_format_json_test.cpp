@@ -8,6 +8,8 @@
 
 #include "motiongan/procedural/procedural.hpp"
 
+namespace position_format_json_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -67,3 +69,5 @@ TEST_CASE("errors name the member") {
   CHECK_THROWS_WITH_AS((void)io::position_format_from_json(bad), doctest::Contains("normalizer"), Error);
   CHECK_THROWS_AS((void)io::position_format_from_json(nlohmann::json::array()), Error);
 }
+
+}  // namespace position_format_json_test

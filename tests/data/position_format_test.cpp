@@ -8,6 +8,8 @@
 
 #include "motiongan/procedural/procedural.hpp"
 
+namespace position_format_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -125,3 +127,5 @@ TEST_CASE("inconsistent members are errors") {
   broken([](PositionFormat& f) { f.layout = PositionLayout(f.skeleton(), false); }, "normalizer");
   broken([](PositionFormat& f) { f.layout = {}; }, "skeleton");
 }
+
+}  // namespace position_format_test

@@ -11,6 +11,8 @@
 #include "motiongan/core/error.hpp"
 #include "motiongan/procedural/procedural.hpp"
 
+namespace position_layout_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -209,3 +211,5 @@ TEST_CASE("invalid positions are errors") {
   CHECK_THROWS_AS((void)layout.track_of(std::vector<Vec3>(4), 1), Error);
   CHECK(layout.encode({}).empty());
 }
+
+}  // namespace position_layout_test

@@ -11,6 +11,8 @@
 #include "motiongan/sample/action_generate.hpp"
 #include "motiongan/train/saved_critic.hpp"
 
+namespace action_direct_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 using motion::Vec3;
@@ -243,3 +245,5 @@ TEST_CASE("what cannot be asked of a class-conditioned model is refused") {
   still.layout = motion::PositionLayout(format().skeleton(), false);
   CHECK_THROWS_WITH_AS(PlaceView(context(), still), doctest::Contains("without the root's track"), Error);
 }
+
+}  // namespace action_direct_test

@@ -12,6 +12,8 @@
 #include "motiongan/direct/pace.hpp"
 #include "motiongan/train/saved_critic.hpp"
 
+namespace direct_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 using motion::Motion;
@@ -248,3 +250,5 @@ TEST_CASE("the critic of a run scores as the trainer's does") {
   CHECK(critic(motion, text) == expected);
   std::filesystem::remove(file);
 }
+
+}  // namespace direct_test

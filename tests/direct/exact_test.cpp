@@ -6,6 +6,8 @@
 #include "motiongan/metrics/jerk.hpp"
 #include "motiongan/procedural/procedural.hpp"
 
+namespace exact_test {
+
 using namespace motiongan;
 using motion::Motion;
 using motion::Vec3;
@@ -106,3 +108,5 @@ TEST_CASE("a correction comes and goes smoothly") {
   offsets.set(24, {3, 0, 0});  // near: one changes into the other
   CHECK(offsets.at(22, 10)[0] == doctest::Approx(2));
 }
+
+}  // namespace exact_test

@@ -8,6 +8,8 @@
 #include "../support/walking_data.hpp"
 #include "motiongan/direct/errors.hpp"
 
+namespace objective_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 using motion::Motion;
@@ -165,3 +167,5 @@ TEST_CASE("paths have times, directions and distances") {
                        Error);
   CHECK_THROWS_WITH_AS(TimedPath({{0, 0, 0.0}, {1, 0, 5.0}}, 4), doctest::Contains("from 0 to 4 s"), Error);
 }
+
+}  // namespace objective_test

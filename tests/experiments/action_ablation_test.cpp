@@ -10,6 +10,8 @@
 #include "../support/messages.hpp"
 #include "motiongan/procedural/procedural.hpp"
 
+namespace action_ablation_test {
+
 using namespace motiongan;
 using motiongan::testing::message_of;
 using motiongan::testing::says;
@@ -119,3 +121,5 @@ TEST_CASE("only claims about the given variants are judged") {
     if (c.claim.starts_with("blend loss: smaller")) CHECK(c.evidence == "full 10, no_blend 30 mm");
   CHECK(judge_claims({}, true).empty());
 }
+
+}  // namespace action_ablation_test

@@ -8,6 +8,8 @@
 
 #include "../support/messages.hpp"
 
+namespace action_evaluation_test {
+
 using namespace motiongan;
 using motion::Vec3;
 using motiongan::testing::message_of;
@@ -226,3 +228,5 @@ TEST_CASE("future_maker() equals feeding back the model's output, independent of
     CHECK(evaluation.measure(future_maker(model)).curve_error > 0);
   }
 }
+
+}  // namespace action_evaluation_test

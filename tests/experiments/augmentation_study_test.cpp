@@ -6,6 +6,8 @@
 
 #include "../support/messages.hpp"
 
+namespace augmentation_study_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 using motion::ActionDataset;
@@ -102,3 +104,5 @@ TEST_CASE("the study compares the same classifier on two training sets") {
   CHECK_THROWS_WITH_AS(study_augmentation(context(), all, synthetic, small),
                        doctest::Contains("no clips for testing"), Error);
 }
+
+}  // namespace augmentation_study_test

@@ -7,6 +7,8 @@
 #include "../support/expmap_files.hpp"
 #include "../support/messages.hpp"
 
+namespace completion_models_test {
+
 using namespace motiongan;
 using testing::ExpmapFolder;
 using testing::message_of;
@@ -141,3 +143,5 @@ TEST_CASE("models that do not fit the data are refused") {
   CHECK(says(message_of([&] { dvgan_errors(other, data, 2, 1, 1); }), "trained on other data"));
   CHECK(says(message_of([&] { dvgan_errors(other, data, 2, 0, 1); }), "samples is 0"));
 }
+
+}  // namespace completion_models_test

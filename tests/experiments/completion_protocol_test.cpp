@@ -8,6 +8,8 @@
 #include "../support/expmap_files.hpp"
 #include "../support/messages.hpp"
 
+namespace completion_protocol_test {
+
 using namespace motiongan;
 using testing::ExpmapFolder;
 using testing::message_of;
@@ -157,3 +159,5 @@ TEST_CASE("zero velocity on the CMU text, to three decimals") {
   CHECK(std::lround(data.true_milliseconds(0)) == 33);
   CHECK(std::lround(data.true_milliseconds(5)) == 417);
 }
+
+}  // namespace completion_protocol_test

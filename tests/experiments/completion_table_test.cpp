@@ -6,6 +6,8 @@
 
 #include "../support/expmap_files.hpp"
 
+namespace completion_table_test {
+
 using namespace motiongan;
 using testing::ExpmapFolder;
 
@@ -87,3 +89,5 @@ TEST_CASE("JSON: null for missing errors") {
   CHECK_FALSE(json["rows"][1]["errors"].contains("washwindow"));
   CHECK(json["rows"][1]["mean"][0].is_null());
 }
+
+}  // namespace completion_table_test

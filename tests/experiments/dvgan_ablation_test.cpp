@@ -6,6 +6,8 @@
 
 #include "../support/messages.hpp"
 
+namespace dvgan_ablation_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -70,3 +72,5 @@ TEST_CASE("mean and spread over seeds, and paired differences") {
   CHECK(d.mean == doctest::Approx(1.0));
   CHECK(d.spread == doctest::Approx(std::sqrt(0.5)));
 }
+
+}  // namespace dvgan_ablation_test

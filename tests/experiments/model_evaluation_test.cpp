@@ -8,6 +8,8 @@
 
 #include "motiongan/procedural/procedural.hpp"
 
+namespace model_evaluation_test {
+
 using namespace motiongan;
 
 namespace {
@@ -146,3 +148,5 @@ TEST_CASE("invalid options and missing test clips are refused") {
   no_test.test.clear();
   CHECK_THROWS_WITH_AS(evaluate_real(ranker, no_test, few()), doctest::Contains("no test clips"), Error);
 }
+
+}  // namespace model_evaluation_test

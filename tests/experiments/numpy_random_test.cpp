@@ -6,6 +6,8 @@
 
 #include "../support/messages.hpp"
 
+namespace numpy_random_test {
+
 using namespace motiongan;
 
 namespace {
@@ -53,3 +55,5 @@ TEST_CASE("an empty range is refused") {
   CHECK(testing::message_of([&] { random.randint(5, 5); }).find("randint(5, 5)") != std::string::npos);
   CHECK_THROWS_AS(random.randint(6, 5), Error);
 }
+
+}  // namespace numpy_random_test

@@ -15,6 +15,8 @@
 #include "../support/messages.hpp"
 #include "../support/npz_bytes.hpp"
 
+namespace amass_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 using namespace motiongan::testing;
@@ -185,3 +187,5 @@ TEST_CASE("files that are not AMASS motions are errors") {
       npy_file("<f8", "(2, 3)", doubles({0, std::numeric_limits<double>::infinity(), 0, 0, 0, 0}));
   CHECK(says(refusal(arrays), "a.npz: frame 1, trans: found inf"));
 }
+
+}  // namespace amass_test

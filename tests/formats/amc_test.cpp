@@ -13,6 +13,8 @@
 #include "../support/expmap_files.hpp"
 #include "../support/messages.hpp"
 
+namespace amc_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 using testing::message_of;
@@ -291,3 +293,5 @@ TEST_CASE("the .asf file of an .amc file") {
   check_ends(read_amc(amc));
   CHECK(says(message_of([] { read_amc("absent/07_01.amc"); }), "absent/07_01.amc does not exist"));
 }
+
+}  // namespace amc_test

@@ -14,6 +14,8 @@
 #include "../support/walking_clips.hpp"
 #include "motiongan/formats/bvh.hpp"
 
+namespace bvh_stream_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -108,3 +110,5 @@ TEST_CASE("a piece that does not fit is rejected, and writing continues as if it
                        doctest::Contains("cannot open"), Error);
   CHECK(folder.files() == 2);
 }
+
+}  // namespace bvh_stream_test

@@ -11,6 +11,8 @@
 #include "../support/folders.hpp"
 #include "motiongan/motion/motion.hpp"
 
+namespace bvh_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -303,3 +305,5 @@ TEST_CASE("skeletons that BVH cannot hold are rejected") {
   CHECK_THROWS_WITH_AS(format_hierarchy(s), doctest::Contains("depth-first"), Error);
   CHECK_THROWS_AS(format_hierarchy(Skeleton{}), Error);
 }
+
+}  // namespace bvh_test

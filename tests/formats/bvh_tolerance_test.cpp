@@ -10,6 +10,8 @@
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/motion/motion.hpp"
 
+namespace bvh_tolerance_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 using motiongan::testing::message_of;
@@ -265,3 +267,5 @@ TEST_CASE("empty files and dead links are called that") {
   CHECK(walk.notes[0].starts_with((folder / "walk.bvh").string() + ":17: Frames: says 3"));
   fs::remove_all(folder);
 }
+
+}  // namespace bvh_tolerance_test

@@ -12,6 +12,8 @@
 #include "../support/messages.hpp"
 #include "motiongan/formats/read_motion.hpp"
 
+namespace clip_files_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 using motiongan::testing::message_of;
@@ -116,3 +118,5 @@ TEST_CASE("a file too large for its kind is refused before it is read") {
   CHECK(says(message_of([&] { read_text(folder.path / "small.txt", "text file", 4); }),
              "small.txt has 5 bytes, expected at most 4"));
 }
+
+}  // namespace clip_files_test

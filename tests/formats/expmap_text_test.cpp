@@ -7,6 +7,8 @@
 #include "../support/expmap_files.hpp"
 #include "../support/messages.hpp"
 
+namespace expmap_text_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 using testing::ExpmapFolder;
@@ -126,3 +128,5 @@ TEST_CASE("the CMU texts themselves") {
   CHECK(all.train.size() == 32);
   CHECK(all.test[4].text.frames == 359);
 }
+
+}  // namespace expmap_text_test

@@ -16,6 +16,8 @@
 #include "../support/glb_reader.hpp"
 #include "../support/messages.hpp"
 
+namespace glb_reader_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 using namespace motiongan::testing;
@@ -236,3 +238,5 @@ TEST_CASE("damaged files are named, and what is wrong with them") {
   changed([](auto& d) { d["nodes"] = Json::array(); }, "is not there");
   changed([](auto& d) { d["nodes"] = "x"; }, "is used, but is not there");
 }
+
+}  // namespace glb_reader_test

@@ -13,6 +13,8 @@
 #include "../support/glb_reader.hpp"
 #include "../support/messages.hpp"
 
+namespace glb_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 using namespace motiongan::testing;
@@ -128,3 +130,5 @@ TEST_CASE("other skeletons have nodes of their own; what cannot be written is re
   broken.positions[5][1] = std::nan("");
   refused({{"broken", broken}}, "not a finite number");
 }
+
+}  // namespace glb_test

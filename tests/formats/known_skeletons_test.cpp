@@ -12,6 +12,8 @@
 #include "../support/messages.hpp"
 #include "../support/npz_bytes.hpp"
 
+namespace known_skeletons_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 using namespace motiongan::testing;
@@ -99,3 +101,5 @@ TEST_CASE("feature vectors are refused") {
   CHECK(told({199, 66}) == "no error");
   CHECK(told({263}) == "no error");
 }
+
+}  // namespace known_skeletons_test

@@ -13,6 +13,8 @@
 
 #include "../support/messages.hpp"
 
+namespace position_files_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 using motiongan::testing::message_of;
@@ -314,3 +316,5 @@ TEST_CASE("files round-trip, and the bone list next to them is found") {
   bad.rate = 0;
   CHECK_THROWS_AS(write_position_csv(folder.path / "x.csv", bad), Error);
 }
+
+}  // namespace position_files_test

@@ -11,6 +11,8 @@
 #include "../support/bodies.hpp"
 #include "motiongan/formats/bvh.hpp"
 
+namespace read_motion_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 namespace fs = std::filesystem;
@@ -155,3 +157,5 @@ TEST_CASE("a frame time in another unit is refused by file, unless --fps correct
   }
   CHECK(read_motion(file, {.fps = 30}).motion.rate == 30);
 }
+
+}  // namespace read_motion_test

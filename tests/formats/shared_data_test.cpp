@@ -15,6 +15,8 @@
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/motion/rotation.hpp"
 
+namespace shared_data_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 namespace fs = std::filesystem;
@@ -124,3 +126,5 @@ TEST_CASE("the CMU clips make the paper's data set") {
   CHECK(set.format.layout.dof() == 96);
   CHECK(set.format.relative_dims.size() == 3);  // x, z and yaw of the root
 }
+
+}  // namespace shared_data_test

@@ -9,6 +9,8 @@
 #include <random>
 #include <string>
 
+namespace short_decimal_test {
+
 namespace {
 
 using motiongan::motion::read_short_decimal;
@@ -50,3 +52,5 @@ TEST_CASE("other numbers are left to from_chars") {
 }
 
 }  // namespace
+
+}  // namespace short_decimal_test

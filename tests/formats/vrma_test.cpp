@@ -9,6 +9,8 @@
 #include "../support/messages.hpp"
 #include "../support/other_bodies.hpp"
 
+namespace vrma_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 using namespace motiongan::testing;
@@ -77,3 +79,5 @@ TEST_CASE("files are written; what is no body is refused") {
   walk.frames = 0;
   CHECK(says(message_of([&] { vrma_file("walk", walk); }), "has no frames"));
 }
+
+}  // namespace vrma_test

@@ -8,6 +8,8 @@
 #include "../support/messages.hpp"
 #include "../support/npz_bytes.hpp"
 
+namespace zip_archive_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 using namespace motiongan::testing;
@@ -130,3 +132,5 @@ TEST_CASE("arrays that are damaged or of other types are errors") {
   CHECK(says(message_of([&] { npz_array(archive, "poses", "a.npz"); }),
              "a.npz: there is no array 'poses'; the file has betas"));
 }
+
+}  // namespace zip_archive_test

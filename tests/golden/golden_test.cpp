@@ -5,6 +5,8 @@
 
 #include "compare.hpp"
 
+namespace golden_test {
+
 using namespace motiongan;
 
 TEST_CASE("models agree with PyTorch" * doctest::test_suite("double")) {
@@ -35,3 +37,5 @@ TEST_CASE("a wrong value in a golden file is detected" * doctest::test_suite("do
   CHECK(r.worst_name == "grad.encode.bias");
   std::filesystem::remove(changed);
 }
+
+}  // namespace golden_test

@@ -15,6 +15,8 @@
 #include "motiongan/io/folder_lock.hpp"
 #include "motiongan/io/safetensors.hpp"
 
+namespace atomic_file_test {
+
 using namespace motiongan;
 using namespace motiongan::io;
 using namespace motiongan::testing;
@@ -146,3 +148,5 @@ TEST_CASE("a folder has one lock, which names its holder and ends with the proce
   CHECK(message_of([&] { FolderLock second(scratch.path); }) == "no error");
   CHECK(says(message_of([&] { FolderLock none(scratch.path / "none"); }), "does the folder exist"));
 }
+
+}  // namespace atomic_file_test

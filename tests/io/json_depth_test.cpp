@@ -6,6 +6,8 @@
 
 #include "../support/messages.hpp"
 
+namespace json_depth_test {
+
 namespace io = motiongan::io;
 namespace motion = motiongan::motion;
 using motiongan::testing::message_of;
@@ -38,3 +40,5 @@ TEST_CASE("files of many nested lists are refused, and do not overflow the stack
   CHECK(io::parse_json(deep).is_discarded());
   CHECK(io::parse_object("{\"a\": " + nested(50) + "}", "m").contains("a"));
 }
+
+}  // namespace json_depth_test

@@ -7,6 +7,8 @@
 #include <motiongan/io/read_number.hpp>
 #include <random>
 
+namespace read_number_test {
+
 using namespace motiongan;
 
 #ifdef __cpp_lib_to_chars
@@ -97,3 +99,5 @@ TEST_CASE("a number and what follows it") {
   CHECK(value == -0.25);
   CHECK(std::string_view(end) == ",next");
 }
+
+}  // namespace read_number_test

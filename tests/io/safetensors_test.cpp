@@ -13,6 +13,9 @@
 #include <vector>
 
 #include "../support/folders.hpp"
+
+namespace safetensors_test {
+
 using motiongan::Error;
 using motiongan::io::SafeTensor;
 using motiongan::io::SafeTensors;
@@ -328,3 +331,5 @@ TEST_CASE("safetensors: every whole type is read with its sign") {
   CHECK_THROWS_AS(tensor("U64", std::vector<unsigned char>(8, 0xff)).as<std::int64_t>(), Error);
   CHECK_THROWS_AS(tensor("I32", {1, 2}).as<int>(), Error);
 }
+
+}  // namespace safetensors_test

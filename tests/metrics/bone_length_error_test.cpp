@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+namespace bone_length_error_test {
+
 using namespace motiongan;
 
 namespace {
@@ -46,3 +48,5 @@ TEST_CASE("a skeleton without bones is rejected") {
   m.positions.resize(1);
   CHECK_THROWS_WITH_AS(bone_length_error(m), doctest::Contains("no bone with a length"), Error);
 }
+
+}  // namespace bone_length_error_test

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+namespace diversity_test {
+
 using namespace motiongan;
 
 namespace {
@@ -60,3 +62,5 @@ TEST_CASE("sets without pairs and wrong sizes are rejected") {
   CHECK_THROWS_WITH_AS(multimodality(set, 2, apart), doctest::Contains("none of 2 descriptions"), Error);
   CHECK_THROWS_WITH_AS(multimodality(set, 2, three), doctest::Contains("the descriptions of 3"), Error);
 }
+
+}  // namespace diversity_test

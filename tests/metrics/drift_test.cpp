@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+namespace drift_test {
+
 using namespace motiongan;
 
 namespace {
@@ -118,3 +120,5 @@ TEST_CASE("one frame, no frames, an unknown range, and NaN") {
   CHECK(motion::read_text(path, "table").find("0,1,nan,nan,") != std::string::npos);
   std::filesystem::remove(path);
 }
+
+}  // namespace drift_test

@@ -13,6 +13,8 @@
 
 #include "motiongan/formats/bvh.hpp"
 
+namespace euler_error_test {
+
 using namespace motiongan;
 using motion::Mat3, motion::Motion, motion::Vec3;
 namespace fs = std::filesystem;
@@ -178,3 +180,5 @@ TEST_CASE("a BVH file gives the errors of its text file") {
   for (std::size_t f = 0; f < 25; ++f) CHECK(std::abs(of_bvh[50 + f] - of_text[f]) < 1e-6);
   CHECK(of_text[24] > 0.5);
 }
+
+}  // namespace euler_error_test

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+namespace foot_skate_test {
+
 using namespace motiongan;
 using motion::Vec3;
 
@@ -120,3 +122,5 @@ TEST_CASE("motions add up, and invalid input is rejected") {
   const std::vector<Vec3> two(14);
   CHECK_THROWS_WITH_AS(foot_skate(two_legs(), two, 0), doctest::Contains("a rate of 0"), Error);
 }
+
+}  // namespace foot_skate_test

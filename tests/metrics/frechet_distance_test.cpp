@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+namespace frechet_distance_test {
+
 using namespace motiongan;
 
 namespace {
@@ -80,3 +82,5 @@ TEST_CASE("sets that cannot be compared are rejected") {
   CHECK_THROWS_WITH_AS(frechet_distance(odd, set, 2), doctest::Contains("the first set has 3 values"), Error);
   CHECK_THROWS_WITH_AS(frechet_distance(wrong, set, 2), doctest::Contains("finite"), Error);
 }
+
+}  // namespace frechet_distance_test

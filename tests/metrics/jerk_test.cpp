@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+namespace jerk_test {
+
 using namespace motiongan;
 using motion::Vec3;
 
@@ -52,3 +54,5 @@ TEST_CASE("too few frames and wrong sizes are rejected") {
   CHECK_THROWS_WITH_AS(mean_jerk(six, 4, 30), doctest::Contains("whole frames of 4"), Error);
   CHECK_THROWS_WITH_AS(mean_jerk(six, 1, 0), doctest::Contains("a rate of 0"), Error);
 }
+
+}  // namespace jerk_test

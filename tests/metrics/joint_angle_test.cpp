@@ -9,6 +9,8 @@
 
 #include "motiongan/procedural/procedural.hpp"
 
+namespace joint_angle_test {
+
 using namespace motiongan;
 using motion::Vec3;
 
@@ -73,3 +75,5 @@ TEST_CASE("input without angles is rejected") {
   CHECK_THROWS_AS(mean_joint_angle(arm, std::vector<Vec3>(4)), Error);
   CHECK(mean_joint_angle(arm, {}).empty());
 }
+
+}  // namespace joint_angle_test

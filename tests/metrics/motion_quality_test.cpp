@@ -8,6 +8,8 @@
 #include "../support/bodies.hpp"
 #include "motiongan/motion/body.hpp"
 
+namespace motion_quality_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -35,3 +37,5 @@ TEST_CASE("bodies of different size measure alike, in any order") {
   CHECK(measure_quality(std::vector{child}, metres).jerk ==
         doctest::Approx(0.6 * measure_quality(std::vector{adult}, metres).jerk).epsilon(1e-9));
 }
+
+}  // namespace motion_quality_test

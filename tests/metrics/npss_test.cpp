@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+namespace npss_test {
+
 using namespace motiongan;
 
 namespace {
@@ -82,3 +84,5 @@ TEST_CASE("sequences that do not fit are rejected") {
   CHECK_THROWS_WITH_AS(npss.add(four, three, 1), doctest::Contains("found 4 true and 3 predicted"), Error);
   CHECK_THROWS_WITH_AS(npss.add(four, four, 3), doctest::Contains("of 3 frames"), Error);
 }
+
+}  // namespace npss_test

@@ -9,6 +9,8 @@
 #include "../support/messages.hpp"
 #include "motiongan/procedural/procedural.hpp"
 
+namespace position_metrics_test {
+
 using namespace motiongan;
 using motion::Vec3;
 using motiongan::testing::message_of;
@@ -85,3 +87,5 @@ TEST_CASE("the procedural walk keeps its bone lengths and travels") {
   CHECK(step.world > 0.005);
   CHECK(step.world < 0.2);
 }
+
+}  // namespace position_metrics_test

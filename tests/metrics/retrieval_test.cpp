@@ -7,6 +7,8 @@
 
 #include "../support/messages.hpp"
 
+namespace retrieval_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -88,3 +90,5 @@ TEST_CASE("inception score") {
   CHECK(inception_score(std::vector<float>{5000 + l3, 5000, -3000, -3000 + l3}, 2) ==
         doctest::Approx(std::log(2.0) - h).epsilon(1e-3));
 }
+
+}  // namespace retrieval_test

@@ -8,6 +8,8 @@
 
 #include "motiongan/metrics/statistics.hpp"
 
+namespace statistics_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -189,3 +191,5 @@ TEST_CASE("sets that cannot be measured or compared are rejected") {
   bare.poses.clear();
   CHECK_THROWS_WITH_AS(compare(bare, a), doctest::Contains("measure()"), Error);
 }
+
+}  // namespace statistics_test

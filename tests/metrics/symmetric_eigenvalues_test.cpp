@@ -7,6 +7,8 @@
 #include <numbers>
 #include <vector>
 
+namespace symmetric_eigenvalues_test {
+
 using namespace motiongan;
 
 TEST_CASE("eigenvalues equal numpy's (numpy.linalg.eigvalsh 1.24)") {
@@ -48,3 +50,5 @@ TEST_CASE("invalid matrices are rejected") {
   CHECK_THROWS_WITH_AS(symmetric_eigenvalues({1, 2, 3}, 2), doctest::Contains("found 3 values"), Error);
   CHECK_THROWS_WITH_AS(symmetric_eigenvalues({1, NAN, NAN, 3}, 2), doctest::Contains("finite"), Error);
 }
+
+}  // namespace symmetric_eigenvalues_test

@@ -7,6 +7,8 @@
 
 #include "../support/small_data.hpp"
 
+namespace dvgan_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -236,3 +238,5 @@ TEST_CASE("a file truncated at any point is refused by name") {
   std::filesystem::remove(path);
   CHECK(says(message_of([&] { Dvgan::load(context(), path); }), path.string() + ": no such file"));
 }
+
+}  // namespace dvgan_test

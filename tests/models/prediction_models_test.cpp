@@ -7,6 +7,8 @@
 #include "../support/folders.hpp"
 #include "../support/messages.hpp"
 
+namespace prediction_models_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 namespace fs = std::filesystem;
@@ -181,3 +183,5 @@ TEST_CASE("invalid sizes and calls are refused by name") {
              }),
              "seq2seq is not trained one step ahead"));
 }
+
+}  // namespace prediction_models_test

@@ -7,6 +7,8 @@
 
 #include "../support/bodies.hpp"
 
+namespace body_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -79,3 +81,5 @@ TEST_CASE("a z-up motion is turned exactly") {
   CHECK(back.skeleton.joints[1].channels ==
         std::vector<Channel>{Channel::y_rotation, Channel::x_rotation, Channel::z_rotation});
 }
+
+}  // namespace body_test

@@ -8,6 +8,8 @@
 
 #include "../support/messages.hpp"
 
+namespace clean_stream_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 using namespace motiongan::testing;
@@ -108,3 +110,5 @@ TEST_CASE("a stream begins anew after its end, and refuses what does not fit") {
   CHECK(says(message_of([&] { stream.push(resample(motion, 50)); }), "joints at 50"));
   CHECK(says(message_of([] { CleanStream wrong({.cutoff = -1}); }), "cutoff -1"));
 }
+
+}  // namespace clean_stream_test

@@ -9,6 +9,8 @@
 
 #include "../support/messages.hpp"
 
+namespace clean_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 using namespace motiongan::testing;
@@ -192,3 +194,5 @@ TEST_CASE("short motions, bodies without legs and senseless options") {
   CHECK(says(message_of([&] { clean(walk, {.cutoff = -1}); }), "cutoff -1"));
   CHECK(says(message_of([&] { clean(walk, {.touch_speed = 2, .leave_speed = 1}); }), "speeds 2 and 1"));
 }
+
+}  // namespace clean_test

@@ -8,6 +8,8 @@
 #include "../support/bodies.hpp"
 #include "motiongan/motion/motion.hpp"
 
+namespace first_frame_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -98,3 +100,5 @@ TEST_CASE("a T-pose or A-pose is found whatever the rest pose is") {
   for (std::size_t f = 1; f < hanging.frames; ++f) set_arms(hanging, f, 60);
   CHECK(t_pose_frames(with_turned_axes(hanging)) == 0);
 }
+
+}  // namespace first_frame_test

@@ -9,6 +9,8 @@
 #include "../support/walking_clips.hpp"
 #include "motiongan/data/dataset.hpp"
 
+namespace heading_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -77,3 +79,5 @@ TEST_CASE("a window does not depend on where and in which direction it was recor
     }
   }
 }
+
+}  // namespace heading_test

@@ -7,6 +7,8 @@
 
 #include "../support/arm.hpp"
 
+namespace kinematics_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -45,3 +47,5 @@ TEST_CASE("a motion with inconsistent arrays is rejected") {
   m.rate = 0;
   CHECK_THROWS_WITH_AS(forward_kinematics(m), doctest::Contains("rate is 0"), Error);
 }
+
+}  // namespace kinematics_test

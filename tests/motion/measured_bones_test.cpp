@@ -7,6 +7,8 @@
 
 #include "../support/bodies.hpp"
 
+namespace measured_bones_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -89,3 +91,5 @@ TEST_CASE("a chain of joints is measured below the one that travels") {
   CHECK(m.skeleton.joints[2].offset == Vec3{0, 40, 0});
   CHECK(m.skeleton.joints[1].offset == Vec3{});
 }
+
+}  // namespace measured_bones_test

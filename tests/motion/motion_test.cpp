@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+namespace motion_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -187,3 +189,5 @@ TEST_CASE("slices") {
   CHECK_THROWS_AS(slice(m, 11, 0), Error);
   CHECK_THROWS_AS(slice(m, 2, static_cast<std::size_t>(-1)), Error);
 }
+
+}  // namespace motion_test

@@ -20,6 +20,8 @@
 #include "motiongan/motion/root_joint.hpp"
 #include "motiongan/procedural/procedural.hpp"
 
+namespace position_rotations_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 using motiongan::testing::message_of;
@@ -375,3 +377,5 @@ TEST_CASE("captured motion is reproduced, if available") {
     CHECK(worst(clip, motion_from_positions(clip)) < 1e-6);
   }
 }
+
+}  // namespace position_rotations_test

@@ -6,6 +6,8 @@
 #include "../support/messages.hpp"
 #include "../support/walking_clips.hpp"
 
+namespace resampler_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 using namespace motiongan::testing;
@@ -56,3 +58,5 @@ TEST_CASE("motions are joined") {
   CHECK(joined.positions == whole.positions);
   CHECK(says(message_of([&] { join(whole, resample(whole, 10)); }), "cannot follow one of"));
 }
+
+}  // namespace resampler_test

@@ -10,6 +10,8 @@
 #include "../support/messages.hpp"
 #include "../support/other_bodies.hpp"
 
+namespace retarget_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 using namespace motiongan::testing;
@@ -273,3 +275,5 @@ TEST_CASE("maps are written, edited and read; mistakes are named") {
   CHECK(made.rotation(5, static_cast<std::size_t>(to.find("upperarm_l"))) == Quat{});
   CHECK(made.rotation(5, static_cast<std::size_t>(to.find("thigh_l"))) != Quat{});
 }
+
+}  // namespace retarget_test

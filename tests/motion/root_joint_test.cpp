@@ -8,6 +8,8 @@
 #include "../support/arm.hpp"
 #include "../support/bodies.hpp"
 
+namespace root_joint_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -138,3 +140,5 @@ TEST_CASE("a root below turned joints is expressed in the world") {
   const Motion plain = below_root({});
   CHECK(with_world_root(plain, 1).positions == plain.positions);
 }
+
+}  // namespace root_joint_test

@@ -11,6 +11,8 @@
 #include "../support/walking_clips.hpp"
 #include "motiongan/data/dataset.hpp"
 
+namespace root_track_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -314,3 +316,5 @@ TEST_CASE("a prior is encoded as a window and placed back") {
     CHECK_THROWS_AS(format.place(made, slice(other, 0, 0)), Error);
   }
 }
+
+}  // namespace root_track_test

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <vector>
 
+namespace rotation_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -224,3 +226,5 @@ TEST_CASE("more than three rotation channels are rejected") {
   const std::vector<Channel> four(4, Channel::x_rotation);
   CHECK_THROWS_WITH_AS(EulerOrder{four}, doctest::Contains("more than three rotation channels"), Error);
 }
+
+}  // namespace rotation_test

@@ -8,6 +8,8 @@
 
 #include "../support/messages.hpp"
 
+namespace skeleton_match_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 using motiongan::testing::message_of, motiongan::testing::says;
@@ -70,3 +72,5 @@ TEST_CASE("the error lists eight differences and counts the rest") {
   CHECK(says(text, "'Tail7' is extra; and 3 more. Use motion"));
   CHECK(!says(text, "Tail8"));
 }
+
+}  // namespace skeleton_match_test

@@ -12,6 +12,8 @@
 #include "../support/check_grads.hpp"
 #include "../support/messages.hpp"
 
+namespace attention_models_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -184,3 +186,5 @@ TEST_CASE("inputs of the wrong shape are rejected" * doctest::test_suite("double
   CHECK(says(message_of([&] { make_critic()(x, some_classes()); }), "2 classes, expected 0"));
   CHECK(says(message_of([&] { make_critic(2)(x); }), "0 classes, expected 2"));
 }
+
+}  // namespace attention_models_test

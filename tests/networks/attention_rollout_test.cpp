@@ -7,6 +7,8 @@
 #include "../support/messages.hpp"
 #include "../support/precision.hpp"
 
+namespace attention_rollout_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -219,3 +221,5 @@ TEST_CASE("inputs of the wrong shape are rejected") {
   CHECK(says(message_of([&] { other.step(x, y, z); }), "the generator takes no noise"));
   CHECK(rollout.step(x, y, z).shape() == Shape{8, 4, 6});
 }
+
+}  // namespace attention_rollout_test

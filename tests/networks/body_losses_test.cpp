@@ -7,6 +7,8 @@
 #include "motiongan/data/dataset.hpp"
 #include "motiongan/procedural/procedural.hpp"
 
+namespace body_losses_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -79,3 +81,5 @@ TEST_CASE("what trembles or slides costs, what is like the clips does not" * doc
   arm.layout = motion::PoseLayout(s, true, 0, motion::RootRotation::velocity);
   CHECK_THROWS_WITH_AS(BodyLosses(arm, contact, truth), doctest::Contains("no joint names contain"), Error);
 }
+
+}  // namespace body_losses_test

@@ -6,6 +6,8 @@
 #include "../support/check_grads.hpp"
 #include "../support/walking_data.hpp"
 
+namespace body_view_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 using motion::RootRotation;
@@ -74,3 +76,5 @@ TEST_CASE("what cannot be seen is an error" * doctest::test_suite("double")) {
   CHECK_THROWS_WITH_AS(view(Var::constant(Tensor(double_context(), {1, 2, data.format.dof()}))),
                        doctest::Contains("expected [2 or more frames, batch, "), Error);
 }
+
+}  // namespace body_view_test

@@ -7,6 +7,8 @@
 #include "../support/check_grads.hpp"
 #include "../support/messages.hpp"
 
+namespace bones_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -108,3 +110,5 @@ TEST_CASE("a skeleton without lengths has no bones" * doctest::test_suite("doubl
   format.classes = {"walk"};
   CHECK(says(message_of([&] { Bones(double_context(), format); }), "no bone of non-zero length"));
 }
+
+}  // namespace bones_test

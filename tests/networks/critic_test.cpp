@@ -7,6 +7,8 @@
 
 #include "../support/check_grads.hpp"
 
+namespace critic_test {
+
 using namespace motiongan;
 using testing::double_context;
 
@@ -200,3 +202,5 @@ TEST_CASE("the penalty's gradient for every parameter equals central differences
     CHECK(testing::check_grads(double_context(), penalty, at, 1) < 1e-7);
   }
 }
+
+}  // namespace critic_test

@@ -6,6 +6,8 @@
 
 #include "../support/check_grads.hpp"
 
+namespace generator_test {
+
 using namespace motiongan;
 using testing::double_context;
 
@@ -146,3 +148,5 @@ TEST_CASE("noise of another size is rejected" * doctest::test_suite("double")) {
   CHECK_THROWS_WITH_AS(model(text, all_noise(double_context(), 1, 1), {}),
                        "CnnGenerator: noise for 2 levels, expected 3", Error);
 }
+
+}  // namespace generator_test

@@ -7,6 +7,8 @@
 #include "../support/check_grads.hpp"
 #include "../support/messages.hpp"
 
+namespace motion_losses_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -111,3 +113,5 @@ TEST_CASE("a skeleton without bones is rejected" * doctest::test_suite("double")
   format.normalizer = motion::Normalizer(std::vector<double>(7, 0.0), std::vector<double>(7, 1.0));
   CHECK(says(message_of([&] { SkeletonLoss(double_context(), format); }), "no bone of non-zero length"));
 }
+
+}  // namespace motion_losses_test

@@ -9,6 +9,8 @@
 #include "../support/check_grads.hpp"
 #include "../support/messages.hpp"
 
+namespace rnn_critic_test {
+
 using namespace motiongan;
 using testing::double_context;
 using testing::message_of;
@@ -178,3 +180,5 @@ TEST_CASE("the penalty's gradient for every parameter equals central differences
       CHECK(testing::check_grads(double_context(), penalty, at, 1) < 1e-7);
     }
 }
+
+}  // namespace rnn_critic_test

@@ -6,6 +6,8 @@
 #include "../support/messages.hpp"
 #include "../support/precision.hpp"
 
+namespace rnn_stream_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -86,7 +88,7 @@ TEST_CASE("16-bit weights: steps equal one call of the rounded generator, near t
             .value()
             .to_host();
       RnnStream stream(generator);
-      const StreamId id = stream.add({a, b, ::c})[1];
+      const StreamId id = stream.add({a, b, rnn_stream_test::c})[1];
       REQUIRE(stream.row_of(id) == 1);
       std::vector<float> motion;
       for (int t = 0; t < 20; ++t) {
@@ -173,3 +175,5 @@ TEST_CASE("empty streams, removed ids and priors of another size") {
   CHECK(says(message_of([&] { stream.add({a}, prior(2), 3); }), "a prior of 3 frames has 14 values"));
   CHECK(says(message_of([&] { stream.add({{{}, 1, 0}}); }), "a sentence is empty"));
 }
+
+}  // namespace rnn_stream_test

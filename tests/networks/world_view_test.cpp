@@ -7,6 +7,8 @@
 #include "../support/walking_data.hpp"
 #include "motiongan/direct/world_pose.hpp"
 
+namespace world_view_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 using motion::RootRotation;
@@ -57,3 +59,5 @@ TEST_CASE("first and second derivatives of the places and the heading" * doctest
     CHECK(check_grads(double_context(), all, {randn({3, 2, data.format.dof()})}, 2) < 1e-7);
   }
 }
+
+}  // namespace world_view_test

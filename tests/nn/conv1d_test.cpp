@@ -7,6 +7,8 @@
 
 #include "../support/check_grads.hpp"
 
+namespace conv1d_test {
+
 using namespace motiongan;
 using testing::double_context;
 
@@ -173,3 +175,5 @@ TEST_CASE("many rows, with packed weights, give the same bits as few rows") {
         }
   }
 }
+
+}  // namespace conv1d_test

@@ -7,6 +7,8 @@
 #include "../support/check_grads.hpp"
 #include "../support/messages.hpp"
 
+namespace frozen_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -53,3 +55,5 @@ TEST_CASE("the gradient of a frozen parameter is an error, whenever its graph wa
   }
   CHECK(grad(before, {p})[0].item() == 5);
 }
+
+}  // namespace frozen_test

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <motiongan/nn/text_encoder.hpp>
 
+namespace initialization_test {
+
 using namespace motiongan;
 
 namespace {
@@ -103,3 +105,5 @@ TEST_CASE("parameters are leaves") {
   for (const NamedParameter& p : parameters) CHECK(p.value->requires_grad());
   CHECK(parameter_count(parameters) == 5 * 8 + 2 * (2 * 32 * 8 + 2 * 32) + 8 * 32 + 8);
 }
+
+}  // namespace initialization_test

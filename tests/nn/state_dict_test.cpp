@@ -6,6 +6,8 @@
 #include <motiongan/nn/state_dict.hpp>
 #include <motiongan/nn/text_encoder.hpp>
 
+namespace state_dict_test {
+
 using namespace motiongan;
 
 namespace {
@@ -131,3 +133,5 @@ TEST_CASE("a file that does not fit is rejected by tensor and changes nothing") 
     CHECK(says(refusal(damaged), "some.safetensors: the tensor \"linear.bias\" holds"));
   }
 }
+
+}  // namespace state_dict_test

@@ -5,6 +5,8 @@
 
 #include "../support/check_grads.hpp"
 
+namespace text_encoder_test {
+
 using namespace motiongan;
 
 namespace {
@@ -138,3 +140,5 @@ TEST_CASE("first and second derivatives of the whole encoder" * doctest::test_su
   check({0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, 1);
   check({0, 2, 9}, 2);  // embedding, the first layer's recurrent weights, projection
 }
+
+}  // namespace text_encoder_test

@@ -7,6 +7,8 @@
 #include "../support/check_grads.hpp"
 #include "../support/messages.hpp"
 
+namespace attention_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -95,3 +97,5 @@ TEST_CASE("with gamma 0 the layer is the identity, and only gamma has a gradient
     CHECK((largest > 0) == (parameters[i].name == "gamma"));
   }
 }
+
+}  // namespace attention_test

@@ -8,6 +8,8 @@
 
 #include "../support/check_grads.hpp"
 
+namespace derivatives_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -183,3 +185,5 @@ TEST_CASE("forward kinematics" * doctest::test_suite("double")) {
   CHECK_THROWS_WITH_AS(forward_kinematics(Var::constant(Tensor(double_context(), {15, 2})), tree),
                        "forward_kinematics: rotations [15, 2], expected [18, poses]", Error);
 }
+
+}  // namespace derivatives_test

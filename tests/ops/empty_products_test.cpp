@@ -12,6 +12,8 @@
 
 #include "../support/check_zero.hpp"
 
+namespace empty_products_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -164,3 +166,5 @@ TEST_CASE("layers without inputs are errors, optimizers of nothing do nothing" *
   for (Optimizer* optimizer : {static_cast<Optimizer*>(&sgd), static_cast<Optimizer*>(&adam)})
     CHECK_NOTHROW(optimizer->step({some({0, 3}).detach()}));
 }
+
+}  // namespace empty_products_test

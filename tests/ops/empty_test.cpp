@@ -7,6 +7,8 @@
 
 #include "../support/check_zero.hpp"
 
+namespace empty_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -135,3 +137,5 @@ TEST_CASE("random numbers for nothing" * doctest::test_suite("double")) {
   CHECK(random_uniform(double_context(), {}, 0).size() == 0);
   CHECK(random_integers(double_context(), {}, 0, 0, 3).size() == 0);
 }
+
+}  // namespace empty_test

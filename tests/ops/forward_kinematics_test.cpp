@@ -8,6 +8,8 @@
 #include "motiongan/motion/kinematics.hpp"
 #include "motiongan/procedural/procedural.hpp"
 
+namespace forward_kinematics_test {
+
 using namespace motiongan;
 
 TEST_CASE("positions of a procedural motion are those of its forward kinematics") {
@@ -62,3 +64,5 @@ TEST_CASE("the lowest joint of every pose is marked, the first of equals") {
   const Var marked = mark_lowest(Var::constant(Tensor::from(context, {3, 3}, heights)));
   CHECK(marked.value().to_host<float>() == std::vector<float>{0, 1, 0, 1, 0, 1, 0, 0, 0});
 }
+
+}  // namespace forward_kinematics_test

@@ -6,6 +6,8 @@
 #include "../support/check_grads.hpp"
 #include "../support/messages.hpp"
 
+namespace gru_rollout_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -94,3 +96,5 @@ TEST_CASE("gru_rollout: few launches per step; wrong shapes are rejected") {
   CHECK(
       says(message_of([&] { fused(2)(x); }), "gru_rollout: gates [9, 2, 96] and [3, 96], last pose [2, 16]"));
 }
+
+}  // namespace gru_rollout_test

@@ -9,6 +9,8 @@
 #include "../support/check_grads.hpp"
 #include "../support/messages.hpp"
 
+namespace indices_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -120,3 +122,5 @@ TEST_CASE("labels" * doctest::test_suite("double")) {
              }),
              "label 3 of sample 1, expected less than 3"));
 }
+
+}  // namespace indices_test

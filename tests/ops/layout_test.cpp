@@ -6,6 +6,8 @@
 
 #include "../support/precision.hpp"
 
+namespace layout_test {
+
 using namespace motiongan;
 
 TEST_CASE("any number of parts of any size lie one after the other, in rows too") {
@@ -37,3 +39,5 @@ TEST_CASE("any number of parts of any size lie one after the other, in rows too"
       }
   }
 }
+
+}  // namespace layout_test

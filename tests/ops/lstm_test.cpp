@@ -6,6 +6,8 @@
 
 #include "../support/check_grads.hpp"
 
+namespace lstm_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -178,3 +180,5 @@ TEST_CASE("h only: the layer without cell states, to the third derivative" * doc
       if (frames > 1 || i != 1) check_equal(of_a[i], of_b[i], 0);
   }
 }
+
+}  // namespace lstm_test

@@ -5,6 +5,8 @@
 
 #include "../support/check_grads.hpp"
 
+namespace rollout_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -77,3 +79,5 @@ TEST_CASE("rollout: one frame returns the given one; wrong shapes are rejected" 
                        "rollout: given [3, 4, 3], gates [1, 4, 8], weights [8, 5], [8, 4], [3, 2]", Error);
   CHECK_THROWS_AS(rollout(value({1, 4, 3}), value({1, 5, 8}), w), Error);
 }
+
+}  // namespace rollout_test

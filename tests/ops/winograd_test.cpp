@@ -10,6 +10,8 @@
 
 #include "../support/precision.hpp"
 
+namespace winograd_test {
+
 using namespace motiongan;
 using namespace motiongan::detail;
 
@@ -193,3 +195,5 @@ TEST_CASE("first and second derivatives agree with differences along a direction
 }
 
 }  // namespace
+
+}  // namespace winograd_test

@@ -4,6 +4,8 @@
 #include <motiongan/nn/linear.hpp>
 #include <motiongan/optim/adam.hpp>
 
+namespace adam_test {
+
 using namespace motiongan;
 
 namespace {
@@ -166,3 +168,5 @@ TEST_CASE("invalid gradients are rejected and change nothing") {
   CHECK(adam.steps() == 0);
   CHECK(p.value().to_host() == std::vector<float>(6, 1));
 }
+
+}  // namespace adam_test

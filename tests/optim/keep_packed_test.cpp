@@ -7,6 +7,8 @@
 #include <motiongan/ops/elementwise.hpp>
 #include <motiongan/optim/sgd.hpp>
 
+namespace keep_packed_test {
+
 using namespace motiongan;
 
 namespace {
@@ -75,3 +77,5 @@ TEST_CASE("an inner scope uses the outer one's") {
 }
 
 }  // namespace
+
+}  // namespace keep_packed_test

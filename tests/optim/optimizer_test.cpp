@@ -9,6 +9,8 @@
 #include "../support/check_grads.hpp"
 #include "../support/messages.hpp"
 
+namespace optimizer_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -85,3 +87,5 @@ TEST_CASE("a parameter listed twice is an error that names both places" * doctes
   CHECK(says(text, "Sgd: the parameters \"p\" and \"tied\" are one"));
   CHECK(says(text, "list it once"));
 }
+
+}  // namespace optimizer_test

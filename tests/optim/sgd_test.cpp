@@ -5,6 +5,8 @@
 
 #include "../support/messages.hpp"
 
+namespace sgd_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -93,3 +95,5 @@ TEST_CASE("invalid options and gradients are rejected" * doctest::test_suite("do
              "Sgd: gradient 0 has shape [1], the parameter [2]"));
   CHECK(sgd.steps() == 0);
 }
+
+}  // namespace sgd_test

@@ -6,6 +6,8 @@
 #include <motiongan/optim/sgd.hpp>
 #include <motiongan/optim/weight_mean.hpp>
 
+namespace weight_mean_test {
+
 using namespace motiongan;
 
 namespace {
@@ -67,3 +69,5 @@ TEST_CASE("weights that stay are their own mean" * doctest::test_suite("double")
     CHECK(mean.values().to_host<double>() == std::vector<double>{0.1, -7});
   }
 }
+
+}  // namespace weight_mean_test

@@ -14,6 +14,8 @@
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/procedural/procedural.hpp"
 
+namespace procedural_test {
+
 using namespace motiongan;
 using namespace motiongan::motion;
 
@@ -347,3 +349,5 @@ TEST_CASE("lengths and rates that give no motion are errors") {
   CHECK(procedural_motions({.clips = 0}).empty());
   CHECK(procedural_motion(5, {.seconds = 0.05, .rate = 30}).motion.frames == 2);
 }
+
+}  // namespace procedural_test

@@ -7,6 +7,8 @@
 
 #include "../support/messages.hpp"
 
+namespace action_generate_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 using motion::ActionDataset;
@@ -163,3 +165,5 @@ TEST_CASE("bones keep the prior's lengths if they are exact, also from a file; t
              }),
              "keeps bones"));
 }
+
+}  // namespace action_generate_test

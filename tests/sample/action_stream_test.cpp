@@ -6,6 +6,8 @@
 
 #include "../support/messages.hpp"
 
+namespace action_stream_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 using motion::ActionDataset;
@@ -179,3 +181,5 @@ TEST_CASE("invalid priors, classes and steps are rejected") {
   CHECK(stream.class_of(id) == "jump");
   CHECK_THROWS_AS(stream.remove(id + 1), Error);
 }
+
+}  // namespace action_stream_test

@@ -7,6 +7,8 @@
 
 #include "../support/messages.hpp"
 
+namespace character_stream_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 using motion::Motion;
@@ -245,3 +247,5 @@ TEST_CASE("invalid calls are rejected and change nothing") {
   CHECK(says(message_of([&] { inner.step(twice); }), "twice"));
   CHECK_THROWS_AS(inner.poses(0), Error);
 }
+
+}  // namespace character_stream_test

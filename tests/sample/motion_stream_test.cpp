@@ -5,6 +5,8 @@
 
 #include "../support/small_data.hpp"
 
+namespace motion_stream_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 using motion::Motion;
@@ -213,3 +215,5 @@ TEST_CASE("steps allocate nothing on the device") {
   CHECK(context().statistics().allocations == warm.allocations);
   CHECK(context().statistics().bytes_in_use == warm.bytes_in_use);
 }
+
+}  // namespace motion_stream_test

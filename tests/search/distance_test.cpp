@@ -11,6 +11,8 @@
 #include "motiongan/procedural/procedural.hpp"
 #include "motiongan/search/ranking.hpp"
 
+namespace distance_test {
+
 using namespace motiongan;
 using motion::RootRotation;
 
@@ -225,3 +227,5 @@ TEST_CASE("invalid searches are rejected") {
   const SearchWindows none(context, format, frames, {});
   CHECK(none(random_hypotheses(format, 1, 1)).distance.empty());
 }
+
+}  // namespace distance_test

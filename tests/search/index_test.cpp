@@ -12,6 +12,8 @@
 #include "motiongan/search/collection.hpp"
 #include "motiongan/search/ranking.hpp"
 
+namespace index_test {
+
 using namespace motiongan;
 namespace fs = std::filesystem;
 
@@ -252,3 +254,5 @@ TEST_CASE("a clip that contains a hypothesis ranks first, once, with its two nea
   CHECK(single.hits[0].nearest.size() == 1);
   CHECK_THROWS_WITH_AS(rank(index, windows, found, one, 1), doctest::Contains("do not fit"), Error);
 }
+
+}  // namespace index_test

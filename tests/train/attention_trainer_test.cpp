@@ -9,6 +9,8 @@
 #include "../support/folders.hpp"
 #include "../support/small_actions.hpp"
 
+namespace attention_trainer_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 namespace fs = std::filesystem;
@@ -267,3 +269,5 @@ TEST_CASE("invalid options are refused") {
              }),
              "takes no noise"));
 }
+
+}  // namespace attention_trainer_test

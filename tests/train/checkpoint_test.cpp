@@ -9,6 +9,8 @@
 #include "../support/folders.hpp"
 #include "../support/small_data.hpp"
 
+namespace checkpoint_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 namespace fs = std::filesystem;
@@ -345,3 +347,5 @@ TEST_CASE("a run that diverged does not overwrite its last checkpoint") {
   CHECK(says(message_of([&] { save_checkpoint(run.trainer, path); }), "\"critic.encode.bias\" holds"));
   CHECK(io::SafeTensors::read(path).tensors == before.tensors);
 }
+
+}  // namespace checkpoint_test

@@ -6,6 +6,8 @@
 #include "../support/check_grads.hpp"
 #include "../support/messages.hpp"
 
+namespace clip_buffer_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -21,3 +23,5 @@ TEST_CASE("a window that exceeds the buffer is an error" * doctest::test_suite("
   CHECK_THROWS_AS(buffer.gather({6}, 3, 2), Error);
   CHECK_THROWS_AS(buffer.gather({-1}, 1), Error);
 }
+
+}  // namespace clip_buffer_test

@@ -7,6 +7,8 @@
 
 #include "../support/small_data.hpp"
 
+namespace device_failure_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -103,3 +105,5 @@ TEST_CASE("host memory that runs out stops a run in the same way") {
   CHECK(says(text, "out of host memory"));
   CHECK(says(text, "\nthe run stopped after iteration 1; nothing of it was saved"));
 }
+
+}  // namespace device_failure_test

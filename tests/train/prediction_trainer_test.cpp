@@ -8,6 +8,8 @@
 #include "../support/folders.hpp"
 #include "../support/small_actions.hpp"
 
+namespace prediction_trainer_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 namespace fs = std::filesystem;
@@ -227,3 +229,5 @@ TEST_CASE("invalid data and options are refused by name") {
   Run run(Predictor::lstm);
   CHECK(says(message_of([&] { static_cast<void>(run.trainer.losses()); }), "no iteration"));
 }
+
+}  // namespace prediction_trainer_test

@@ -14,6 +14,8 @@
 #include "../support/folders.hpp"
 #include "../support/messages.hpp"
 
+namespace progress_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -219,3 +221,5 @@ TEST_CASE("a damaged log is repaired to the last whole row, and that is said") {
   CHECK(says(said[0], "is now " + damaged.string()));
   CHECK(says(said[1], "no rows of iterations 1 to 2"));
 }
+
+}  // namespace progress_test

@@ -7,6 +7,8 @@
 
 #include "../support/small_data.hpp"
 
+namespace ranker_trainer_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 namespace fs = std::filesystem;
@@ -157,3 +159,5 @@ TEST_CASE("invalid data and files are refused") {
              "expected one of cnn_ranker, rnn_ranker; motiongan train ranker makes one"));
   fs::remove(file);
 }
+
+}  // namespace ranker_trainer_test

@@ -10,6 +10,8 @@
 #include "../support/thread_ranks.hpp"
 #include "motiongan/train/train.hpp"
 
+namespace ranks_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 namespace fs = std::filesystem;
@@ -156,3 +158,5 @@ TEST_CASE("ranks that do not fit together, and a rank that fails") {
     }
   });
 }
+
+}  // namespace ranks_test

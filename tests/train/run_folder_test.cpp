@@ -10,6 +10,8 @@
 #include "../support/folders.hpp"
 #include "../support/small_data.hpp"
 
+namespace run_folder_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 namespace fs = std::filesystem;
@@ -209,3 +211,5 @@ TEST_CASE("an interruption does not give up a short iteration") {
   CHECK(result.iterations == 2);
   CHECK(result.stopped);
 }
+
+}  // namespace run_folder_test

@@ -8,6 +8,8 @@
 
 #include "../support/small_data.hpp"
 
+namespace threads_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -61,3 +63,5 @@ TEST_CASE("training in two threads at once gives the same bits as one after the 
   CHECK_FALSE(a.parameters.empty());
   CHECK(a.parameters != b.parameters);
 }
+
+}  // namespace threads_test

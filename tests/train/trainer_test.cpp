@@ -5,6 +5,8 @@
 
 #include "../support/small_data.hpp"
 
+namespace trainer_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -239,3 +241,5 @@ TEST_CASE("invalid options are refused") {
   CHECK(says(message_of([&] { train(run.model, small_data(), small_options, {.log_every = 0}); }),
              "log_every"));
 }
+
+}  // namespace trainer_test

@@ -8,6 +8,8 @@
 #include "../support/small_actions.hpp"
 #include "../support/small_data.hpp"
 
+namespace training_cost_test {
+
 using namespace motiongan;
 using namespace motiongan::testing;
 
@@ -140,3 +142,5 @@ TEST_CASE("more iterations than there are random numbers are refused before anyt
   options = {.critic_steps = ~std::size_t{0}};
   CHECK(says(message_of([&] { training_cost(context, options, never); }), "lower critic_steps"));
 }
+
+}  // namespace training_cost_test

@@ -6,6 +6,8 @@
 
 #include "../support/check_grads.hpp"
 
+namespace wgan_gp_test {
+
 using namespace motiongan;
 using testing::double_context;
 
@@ -133,3 +135,5 @@ TEST_CASE("the terms of the critic's loss" * doctest::test_suite("double")) {
       CHECK(gradient[t * channels + c] == doctest::Approx(expected).epsilon(1e-10));
     }
 }
+
+}  // namespace wgan_gp_test

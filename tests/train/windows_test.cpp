@@ -5,6 +5,8 @@
 
 #include "motiongan/procedural/procedural.hpp"
 
+namespace windows_test {
+
 using namespace motiongan;
 
 TEST_CASE("the device gathers the same windows as the host, with and without rotation") {
@@ -37,3 +39,5 @@ TEST_CASE("the device gathers the same windows as the host, with and without rot
       for (std::size_t count : seen) CHECK(count > 0);
     }
 }
+
+}  // namespace windows_test

@@ -7,6 +7,8 @@
 
 #include "figure_help.hpp"
 
+namespace figure_test {
+
 using namespace motiongan;
 using view::Side;
 
@@ -77,3 +79,5 @@ TEST_CASE("one frame and one joint are enough") {
   CHECK(figure.nodes() == 1);
   CHECK(figure.height > 0);
 }
+
+}  // namespace figure_test

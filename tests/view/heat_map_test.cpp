@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+namespace heat_map_test {
+
 using namespace motiongan;
 using view::Color;
 
@@ -95,3 +97,5 @@ TEST_CASE("invalid maps are rejected") {
   CHECK_THROWS_AS(view::heat_map(std::vector{map}, {.row_scale = 0}), Error);
   CHECK_THROWS_AS(view::heat_map(std::vector{map}, {.cell = 20000}), Error);
 }
+
+}  // namespace heat_map_test

@@ -11,6 +11,8 @@
 #include "motiongan/view/line_plot.hpp"
 #include "motiongan/view/pose_strip.hpp"
 
+namespace picture_test {
+
 using namespace motiongan;
 using view::Color;
 
@@ -145,3 +147,5 @@ TEST_CASE("axes have round numbers") {
   CHECK(axis.high == doctest::Approx(50));
   CHECK(view::detail::nice_axis(7, 7, 5).high > 7);
 }
+
+}  // namespace picture_test

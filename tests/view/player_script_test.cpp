@@ -12,6 +12,8 @@
 #include "figure_help.hpp"
 #include "motiongan/view/player.hpp"
 
+namespace player_script_test {
+
 using namespace motiongan;
 namespace fs = std::filesystem;
 
@@ -130,3 +132,5 @@ TEST_CASE("a path is drawn dashed, a target and a ghost beside the figure, all i
   // The path, the target's line and its circle, and the ghost's limbs.
   CHECK(lines(marked) > lines(plain) + 3);
 }
+
+}  // namespace player_script_test

@@ -16,6 +16,8 @@
 #include "../support/folders.hpp"
 #include "figure_help.hpp"
 
+namespace player_test {
+
 using namespace motiongan;
 
 namespace {
@@ -174,3 +176,5 @@ TEST_CASE("a page is written whole or not at all") {
   CHECK_THROWS_AS(view::player_page(motions, {.max_rate = 0}), Error);
   std::filesystem::remove_all(folder);
 }
+
+}  // namespace player_test
