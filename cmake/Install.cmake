@@ -6,6 +6,11 @@ if(TARGET motiongan-command)
   install(TARGETS motiongan-command RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT command)
 endif()
 
+# The shipped models, found by name: beside the command in the build folder, in share/ once installed.
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/models/" DESTINATION "${CMAKE_INSTALL_DATADIR}/motiongan/models" COMPONENT command
+  FILES_MATCHING PATTERN "*.safetensors" PATTERN "*.md" PATTERN "SHA256SUMS")
+file(CREATE_LINK "${PROJECT_SOURCE_DIR}/models" "${PROJECT_BINARY_DIR}/models" SYMBOLIC)
+
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/include/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT dev
   FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY "${motiongan_generated}/" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT dev

@@ -102,8 +102,9 @@ MOTIONGAN_API motiongan_status motiongan_close(uint64_t handle);
 
 /* ---- models */
 
-/** Opens a model file, or the generator in the folder of a training run. `device` selects the OpenCL device:
- * "cpu", "gpu", a part of its name, "NAME:index"; NULL or "": that of MOTIONGAN_DEVICE, else the best one. */
+/** Opens a model file, the generator in the folder of a training run, or a shipped model by its name ("cmu-text").
+ * `device` selects the OpenCL device: "cpu", "gpu", a part of its name, "NAME:index"; NULL or "": that of
+ * MOTIONGAN_DEVICE, else the best one. */
 MOTIONGAN_API motiongan_status motiongan_model_open(const char* path, const char* device,
                                                     motiongan_model* model);
 

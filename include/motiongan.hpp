@@ -117,9 +117,11 @@ namespace view {}
 #include "motiongan/networks/world_view.hpp"
 //
 #include "motiongan/models/action_gan.hpp"
+#include "motiongan/models/action_starts.hpp"
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/models/prediction_model.hpp"
 #include "motiongan/models/ranker.hpp"
+#include "motiongan/models/shipped_models.hpp"
 //
 #include "motiongan/train/checkpoint.hpp"
 #include "motiongan/train/dvgan_trainer.hpp"

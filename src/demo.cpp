@@ -1,4 +1,5 @@
-// motiongan demo: trains a small model on the built-in motion for a few minutes and shows what it learnt.
+// motiongan demo: shows what the shipped models make; trains a small model on the built-in motion for a few
+// minutes and shows what it learnt.
 #include <algorithm>
 #include <fstream>
 
@@ -11,6 +12,7 @@
 #include "shared/shell.hpp"
 #include "shared/show.hpp"
 #include "shared/signals.hpp"
+#include "shipped_motions.hpp"
 #include "train/training.hpp"
 
 namespace motiongan::command {
@@ -39,7 +41,10 @@ void renew(const fs::path& out) {
   make_folder(out);
   motion::write_text_atomically(note, concat(marker, R"(, which empties this folder when it runs again
 
-motions.html   real and generated motion side by side; open it in a browser
+shipped.html   motion of the models that come with motiongan; open it in a browser
+shipped.png    the same as rows of poses
+shipped/       the same as BVH files
+motions.html   real and generated motion side by side, of a model trained here
 poses.png      the same as rows of poses
 training.png   the Wasserstein estimate and the gradient penalty during training
 bvh/           the motions as BVH files
@@ -174,17 +179,19 @@ int run_demo(const DemoArgs& demo) {
   const fs::path out = demo.out;
   const Context context;  // first, so that nothing is touched without a device
   renew(out);
-  fmt::print("1. data\n");
+  fmt::print("1. motion of the models that come with motiongan\n");
+  show_shipped_motions(context, out);
+  fmt::print("\n2. data, to train a model on: built-in motion\n");
   DvganArgs args = demo_options();
   const motion::Dataset data = load_data(args);
   print_data(data, args);
-  fmt::print("\n2. training for {} (Ctrl-C stops early and continues with step 3)\n",
+  fmt::print("\n3. training for {} (Ctrl-C stops early and continues with step 4)\n",
              duration(60 * demo.minutes));
   Dvgan model(context, data.format, args.model);
   print_model(model);
   const RunResult result = train_for(demo.minutes, model, data, args, out / "save");
 
-  fmt::print("\n3. new motion after {}\n", counted(result.iterations, "iteration"));
+  fmt::print("\n4. new motion after {}\n", counted(result.iterations, "iteration"));
   write_motions(model, data, out);
   const CsvTable log = read_csv_log(RunFiles{out / "save"}.log());
   write_png(out / "training.png", plot_log(log, "motiongan demo"));
@@ -192,7 +199,9 @@ int run_demo(const DemoArgs& demo) {
   judge(log, compare_with_real(model, data));
 
   const std::string save = shell_word((out / "save").string());
-  fmt::print("\nopen {} in a browser\n", fs::absolute(out / "motions.html").lexically_normal().string());
+  fmt::print("\nto open in a browser\n");
+  for (const char* page : {"shipped.html", "motions.html"})
+    if (fs::exists(out / page)) fmt::print("  {}\n", fs::absolute(out / page).lexically_normal().string());
   fmt::print("\nmore from this model\n");
   fmt::print("  {} generate {} --text {} --count 4 --rate 30 --html more.html\n", program(), save,
              shell_quoted(clips_to_show(data).front()->captions.front()));
@@ -207,7 +216,8 @@ const Verb demo_verb{
     "demo", [](CLI::App& app, Job& job) {
       CLI::App* verb = app.add_subcommand(
           "demo",
-          "Train a small model on built-in motion and show the result: BVH files, an HTML page, pictures");
+          "Show what the shipped models make, train a small model on built-in motion, and show the result:\n"
+          "BVH files, HTML pages, pictures");
       const auto args = std::make_shared<DemoArgs>();
       verb->add_option("--minutes", args->minutes, "training time in minutes")
           ->capture_default_str()

@@ -121,9 +121,7 @@ const Verb evaluate_model_verb{
       const auto option = [&](const char* name, auto& member, const char* text) {
         return verb->add_option(name, member, text)->capture_default_str();
       };
-      verb->add_option("MODEL", a.model, "model file, or the --save folder of a training run")
-          ->required()
-          ->type_name("");
+      verb->add_option("MODEL", a.model, model_help)->required()->type_name("");
       add_test_clip_options(*verb, a);
       verb->add_option("--ranker", a.ranker, "folder of a `train ranker` run, or a ranker file")
           ->required()

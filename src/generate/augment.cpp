@@ -139,9 +139,7 @@ const Verb augment_verb{
                              "--study trains classifiers with and without the synthetic clips, and "
                              "tests them on the held-out clips.");
       const auto args = std::make_shared<AugmentArgs>();
-      verb->add_option("MODEL", args->model, "model file, or the --save folder of a training run")
-          ->required()
-          ->type_name("");
+      verb->add_option("MODEL", args->model, model_help)->required()->type_name("");
       add_action_data_options(*verb, args->data, false);
       verb->add_option("--out", args->out, "folder for the clips and labels.tsv; created if missing")
           ->type_name("DIR");

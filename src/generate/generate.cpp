@@ -255,9 +255,7 @@ const Verb generate_verb{
           "with an RNN generator generates any number of frames and writes them as it goes.");
       const auto args = std::make_shared<GenerateArgs>();
       const auto actions = std::make_shared<ActionGenerateArgs>();
-      verb->add_option("MODEL", args->model, "model file, or the --save folder of a training run")
-          ->required()
-          ->type_name("");
+      verb->add_option("MODEL", args->model, model_help)->required()->type_name("");
       verb->add_option("--text", args->texts, "description of the motion; may be repeated")
           ->type_name("TEXT")
           ->expected(1)

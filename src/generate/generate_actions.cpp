@@ -3,6 +3,7 @@
 
 #include "generate/action_priors.hpp"
 #include "motiongan/data/clip_source.hpp"
+#include "motiongan/models/action_starts.hpp"
 #include "motiongan/sample/action_generate.hpp"
 #include "motiongan/view/heat_map.hpp"
 #include "shared/action_files.hpp"
@@ -30,6 +31,22 @@ double asked_seconds(const ActionGenerateArgs& args, double rate) {
   return has_length(args) ? 0 : 10;
 }
 
+/// Seconds that the model's file keeps, those of class `label` if there are any, in turn; empty if it has
+/// none.
+std::vector<GivenPrior> kept_priors(const fs::path& file, const motion::PositionFormat& format,
+                                    std::size_t label, std::size_t first_sample, std::size_t count) {
+  std::vector<ActionStart> starts = starts_in(io::SafeTensors::read(file), format, file.string());
+  const auto other = [&](const ActionStart& start) { return start.label != label; };
+  if (!std::all_of(starts.begin(), starts.end(), other)) std::erase_if(starts, other);
+  std::vector<GivenPrior> out;
+  for (std::size_t i = 0; !starts.empty() && i < count; ++i) {
+    const ActionStart& start = starts[(first_sample + i) % starts.size()];
+    const double at = static_cast<double>(start.prior.first_frame) / format.rate;
+    out.push_back({start.prior, start.rotations, fmt::format("{} from {} on", start.prior.id, duration(at))});
+  }
+  return out;
+}
+
 /// The priors; `inputs` are the files, or the folder, that they were read from.
 std::vector<GivenPrior> find_priors(const ActionGenerateArgs& args, const CLI::App& verb,
                                     const fs::path& file, const ActionGan& model, std::size_t label,
@@ -53,9 +70,13 @@ std::vector<GivenPrior> find_priors(const ActionGenerateArgs& args, const CLI::A
     return out;
   }
   require(args.at.empty(), "--at needs --from: it says where in that clip the motion starts");
+  if (args.data.empty() && !fs::is_directory(args.model))
+    if (std::vector<GivenPrior> kept = kept_priors(file, format, label, args.first_sample, args.count);
+        !kept.empty())
+      return kept;
   const fs::path run = fs::is_directory(args.model) ? fs::path(args.model) : file.parent_path();
   require(fs::exists(RunFiles{run}.split()), "give the second to continue with --from CLIP: ", file.string(),
-          " is not in the folder of a run from whose clips one could be drawn");
+          " keeps none, and is not in the folder of a run from whose clips one could be drawn");
   take_data_of_run(
       data, verb, run,
       "give the second to continue with --from CLIP, or the clips to draw one from with --data FOLDER");
@@ -141,9 +162,10 @@ void add_action_options(CLI::App& verb, ActionGenerateArgs& a) {
          "duration, if --class does not give it [10; as long as what is asked for needs, if "
          "the motion is directed]")
       ->check(positive());
-  option("--from", a.from,
-         "clip with the second to continue; may be repeated [drawn from the run's test "
-         "clips]")
+  option(
+      "--from", a.from,
+      "clip with the second to continue; may be repeated [one that the model's file keeps, else drawn from "
+      "the run's test clips]")
       ->type_name("CLIP")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

@@ -115,9 +115,7 @@ const Verb inbetween_verb{
       const auto option = [&](const char* name, auto& member, const char* text) {
         return verb->add_option(name, member, text);
       };
-      option("MODEL", args->model, "model file, or the --save folder of a training run")
-          ->required()
-          ->type_name("");
+      option("MODEL", args->model, model_help)->required()->type_name("");
       option("--from", args->from, "clip before the gap, with the model's skeleton")
           ->required()
           ->type_name("CLIP");

@@ -3,6 +3,7 @@
 
 #include "inspect/plot_log.hpp"
 #include "motiongan/io/safetensors.hpp"
+#include "motiongan/models/shipped_models.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/motion/root_joint.hpp"
 #include "motiongan/train/csv_log.hpp"
@@ -128,7 +129,9 @@ void print_log(const fs::path& file, const std::string& png) {
 }
 
 int info(const InfoArgs& args) {
-  const fs::path path = args.path;
+  // A name that is no file may be a shipped model's.
+  const fs::path path =
+      fs::exists(motion::ClipPath(args.path).file) ? fs::path(args.path) : find_model(args.path);
   require(fs::exists(motion::ClipPath(path).file), path.string(), " does not exist");
   check_output("--png", args.png, picture_output, {path, args.captions});
   const std::string extension = motion::extension_of(path);
@@ -158,7 +161,9 @@ const Verb info_verb{
           "(BVH, GLB, FBX, AMC, NPZ, NPY, CSV), a folder of clips with their captions, the log.csv of "
           "a run.");
       const auto args = std::make_shared<InfoArgs>();
-      verb->add_option("PATH", args->path, "file or folder")->required()->type_name("");
+      verb->add_option("PATH", args->path, "file or folder, or the name of a shipped model")
+          ->required()
+          ->type_name("");
       verb->add_option("--captions", args->captions,
                        "captions of a folder of clips [captions.tsv, .csv or .json in it, else .txt files]")
           ->type_name("FILE");

@@ -303,9 +303,7 @@ const Verb search_verb{
       const auto option = [&](const char* name, auto& member, const char* text) {
         return verb->add_option(name, member, text);
       };
-      option("--model", args->model, "model file, or the --save folder of a training run")
-          ->required()
-          ->type_name("MODEL");
+      option("--model", args->model, model_help)->required()->type_name("MODEL");
       option("--text", args->text, "description of the motion to find")->required()->type_name("TEXT");
       add_strict_option(*verb, args->strict);
       option("--collection", args->collection, "folder of clips of the model's skeleton, or one file")

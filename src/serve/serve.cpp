@@ -49,9 +49,7 @@ const Verb serve_verb{
           "machine. "
           "Ctrl-C\nends the server.");
       const auto args = std::make_shared<ServeArgs>();
-      verb->add_option("MODEL", args->model.model, "model file, or the --save folder of a training run")
-          ->required()
-          ->type_name("");
+      verb->add_option("MODEL", args->model.model, model_help)->required()->type_name("");
       verb->add_option("--port", args->port, "port to listen at; 0: any free one")
           ->check(CLI::Range(0, 65535))
           ->capture_default_str();

@@ -50,6 +50,10 @@ struct Verb {
   Runs runs;
 };
 
+/// What a verb that takes a model says of it.
+inline constexpr const char* model_help =
+    "model file, the --save folder of a training run, or the name of a shipped model (motiongan models)";
+
 /// How this command was invoked, for suggested command lines: "motiongan", or the path to it.
 inline std::string& program() {
   static std::string name = "motiongan";

@@ -10,11 +10,13 @@ TEST_CASE("the demo writes what it promises, again and again, and spares other p
   for (int i = 0; i < 2; ++i) {
     const Said said = call("demo --minutes 0.01");
     CHECK_MESSAGE(said.status == 0, said.text);
+    CHECK(said.has("wrote demo-out/shipped: 12 BVH files"));
     CHECK(said.has("wrote demo-out/bvh: 18 BVH files"));
     CHECK(said.has("The Wasserstein estimate"));
     CHECK(said.has("motiongan train dvgan my-clips"));
-    for (const char* file : {"motions.html", "poses.png", "training.png", "README.txt",
-                             "bvh/walk_generated_1.bvh", "save/generator.safetensors"})
+    for (const char* file :
+         {"shipped.html", "shipped.png", "shipped/walk.bvh", "motions.html", "poses.png", "training.png",
+          "README.txt", "bvh/walk_generated_1.bvh", "save/generator.safetensors"})
       CHECK(fs::exists(fs::path("demo-out") / file));
     write_file("demo-out/bvh/old.bvh", "from the run before");
   }

@@ -17,6 +17,8 @@
 namespace safetensors_test {
 
 using motiongan::Error;
+using motiongan::io::float_to_half;
+using motiongan::io::half_to_float;
 using motiongan::io::SafeTensor;
 using motiongan::io::SafeTensors;
 namespace fs = std::filesystem;
@@ -90,6 +92,27 @@ TEST_CASE("safetensors: what was written is read again, number for number") {
 
   SafeTensors().write(folder.path / "empty");
   CHECK(SafeTensors::read(folder.path / "empty").tensors.empty());
+}
+
+TEST_CASE("safetensors: halves round to the nearest, of two to the even one") {
+  for (std::uint32_t bits = 0; bits < 0x10000; ++bits) {  // every half is its own nearest
+    const auto half = static_cast<std::uint16_t>(bits);
+    const float value = half_to_float(half);
+    if (std::isnan(value)) continue;
+    CHECK(float_to_half(value) == half);
+    if (std::isinf(value) || (bits & 0x7FFF) == 0x7BFF) continue;
+    // Between it and the next one: half a step goes to the even one, a little more or less to the nearest.
+    const float next = half_to_float(static_cast<std::uint16_t>(bits + 1)),
+                middle = value + (next - value) / 2;
+    CHECK(float_to_half(middle) == bits + (bits & 1));
+    CHECK(float_to_half(std::nextafter(middle, value)) == half);
+    CHECK(float_to_half(std::nextafter(middle, next)) == bits + 1);
+  }
+  const float infinity = std::numeric_limits<float>::infinity();
+  CHECK(float_to_half(65519.99f) == 0x7BFF);
+  CHECK(float_to_half(65520) == 0x7C00);
+  CHECK(float_to_half(-infinity) == 0xFC00);
+  CHECK(std::isnan(half_to_float(float_to_half(std::numeric_limits<float>::quiet_NaN()))));
 }
 
 TEST_CASE("safetensors: a file as others write it: any order of fields, spaces, half precision") {

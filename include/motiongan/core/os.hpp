@@ -26,6 +26,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 /// What is asked of the operating system.
 namespace motiongan::os {
@@ -114,6 +115,12 @@ inline bool overwrite(FileHandle file, std::string_view text) {
 
 /// The number of this process.
 inline long process_id() { return ::getpid(); }
+
+/// The path of the running program; empty where the system does not say.
+inline std::filesystem::path program_path() {
+  std::error_code problem;
+  return std::filesystem::read_symlink("/proc/self/exe", problem);
+}
 
 /// The machine's name on the network; empty if it has none.
 inline std::string host_name() {

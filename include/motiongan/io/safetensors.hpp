@@ -1,6 +1,7 @@
 // Reads and writes safetensors files: the header's length (8 bytes, little endian), a JSON header, and the
 // tensors' data.
 #pragma once
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <concepts>
@@ -35,6 +36,18 @@ inline float half_to_float(std::uint16_t half) {
                 : mantissa == 0  ? std::numeric_limits<float>::infinity()
                                  : std::numeric_limits<float>::quiet_NaN();
   return half & 0x8000 ? -value : value;
+}
+
+/// float to IEEE half precision: the nearest, of two the even one; infinite from 65520 on.
+inline std::uint16_t float_to_half(float value) {
+  const auto sign = static_cast<std::uint32_t>(std::signbit(value)) << 15;
+  const float size = std::abs(value);
+  if (!(size < 65520)) return static_cast<std::uint16_t>(sign | (std::isnan(value) ? 0x7E00u : 0x7C00u));
+  int exponent = -24;  // of zero
+  if (size > 0) std::frexp(size, &exponent);
+  const int step = std::max(exponent - 11, -24);  // 2^step is the distance of its neighbours
+  const auto steps = static_cast<std::uint32_t>(std::nearbyint(std::ldexp(size, -step)));
+  return static_cast<std::uint16_t>(sign | ((static_cast<std::uint32_t>(step + 24) << 10) + steps));
 }
 
 /// bfloat16, the upper half of a float, to float (exact).
@@ -87,6 +100,20 @@ struct SafeTensor {
     }
     throw Error("a tensor has type ", dtype, ", expected ",
                 std::is_floating_point_v<T> ? "floating-point" : "integer", " elements");
+  }
+
+  /// The elements rounded to F16. Throws Error if a finite one exceeds its range.
+  SafeTensor as_half() const {
+    std::vector<std::uint16_t> halves;
+    halves.reserve(count());
+    for (const float value : as<float>()) {
+      halves.push_back(float_to_half(value));
+      require(!std::isfinite(value) || (halves.back() & 0x7C00) != 0x7C00, "an element is ", value,
+              ", more than the 65504 that 16 bits hold");
+    }
+    SafeTensor out{"F16", shape, std::vector<std::byte>(2 * halves.size())};
+    if (!halves.empty()) std::memcpy(out.data.data(), halves.data(), out.data.size());
+    return out;
   }
 
   friend bool operator==(const SafeTensor&, const SafeTensor&) = default;

@@ -155,10 +155,12 @@ class Dvgan {
   void bfloat16() { detail::round_weights(generator_); }
 
   /// Writes one safetensors file with the weights (PyTorch's names and shapes), the options and the format.
-  void save(const std::filesystem::path& path) { save_model(*this, path); }
+  void save(const std::filesystem::path& path, StoredWeights stored = StoredWeights::whole) {
+    save_model(*this, path, stored);
+  }
 
-  /// Loads a file that save() wrote, or the generator in a checkpoint. Throws Error, naming the file and the
-  /// problem, for any other file.
+  /// Loads a file that save() wrote, the generator in a checkpoint, or a shipped model by its name
+  /// ("cmu-text"). Throws Error, naming the file and the problem, for any other file.
   static Dvgan load(const Context& context, const std::filesystem::path& path,
                     WeightSource source = WeightSource::mean) {
     return load_model<Dvgan>(context, path, source);

@@ -15,6 +15,7 @@
 
 #include "motiongan/io/fields_json.hpp"
 #include "motiongan/io/safetensors.hpp"
+#include "motiongan/models/shipped_models.hpp"
 #include "motiongan/nn/state_dict.hpp"
 
 namespace motiongan {
@@ -74,12 +75,21 @@ inline std::map<std::string, std::string> model_metadata(const io::SafeTensors& 
   return out;
 }
 
+/// How the weights of a model file are stored.
+enum class StoredWeights {
+  whole,  ///< as they are
+  half    ///< rounded to 16 bits (F16), in half the space; they are computed with as before
+};
+
 /// Writes the weights (PyTorch's names and shapes) and the metadata as one safetensors file.
 template <class Model>
-void save_model(Model& model, const std::filesystem::path& path) {
+void save_model(Model& model, const std::filesystem::path& path,
+                StoredWeights stored = StoredWeights::whole) {
   io::SafeTensors file;
   describe_model(model, file);
   io::save_parameters(named_parameters(model), file);
+  if (stored == StoredWeights::half)
+    for (auto& [name, tensor] : file.tensors) tensor = tensor.as_half();
   file.write(path);
 }
 
@@ -160,11 +170,12 @@ Model model_from(const Context& context, const io::SafeTensors& file, const std:
   return model;
 }
 
-/// Loads a file as model_from().
+/// Loads a file, or a shipped model by its name (find_model()), as model_from().
 template <class Model>
 Model load_model(const Context& context, const std::filesystem::path& path,
                  WeightSource source = WeightSource::mean) {
-  return model_from<Model>(context, io::SafeTensors::read(path), path.string(), source);
+  const std::filesystem::path file = find_model(path);
+  return model_from<Model>(context, io::SafeTensors::read(file), file.string(), source);
 }
 
 }  // namespace motiongan

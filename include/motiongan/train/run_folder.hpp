@@ -31,9 +31,10 @@ struct RunFiles {
   std::filesystem::path network(const std::string& name) const { return folder / (name + ".safetensors"); }
 };
 
-/// The model file `given`, or the one in the folder `given` of a run. Throws Error if the folder has none.
+/// The model file `given`, the one in the folder `given` of a run, or the shipped model of this name
+/// (find_model()). Throws Error if the folder has none.
 inline std::filesystem::path model_file(const std::filesystem::path& given) {
-  if (!std::filesystem::is_directory(given)) return given;
+  if (!std::filesystem::is_directory(given)) return find_model(given);
   const RunFiles files{given};
   require(std::filesystem::exists(files.generator()), given.string(), " holds no ",
           files.generator().filename().string(),
