@@ -41,7 +41,7 @@ std::vector<ActionStart> starts_of(const PackArgs& args, const CLI::App& verb,
 
 /// Puts a file's SHA-256 into the list beside it, in place of its old line.
 std::string list_in_folder(const fs::path& file) {
-  const std::string sum = io::sha256_of(file);
+  std::string sum = io::sha256_of(file);
   const fs::path list = file.parent_path() / shipped_list;
   const std::string name = file.filename().string();
   std::vector<std::string> lines{sum + "  " + name};

@@ -90,7 +90,7 @@ inline std::vector<ActionStart> starts_in(const io::SafeTensors& file, const mot
           std::find(format.classes.begin(), format.classes.end(), entry.at("class").get<std::string>());
       require(label != format.classes.end(), "start ", out.size(), " is of no class of the model");
       start.label = static_cast<std::size_t>(label - format.classes.begin());
-      const auto values = [&](const char* part, std::vector<std::size_t> shape) {
+      const auto values = [&](const char* part, const std::vector<std::size_t>& shape) {
         const io::SafeTensor& tensor = file.at(name + part);
         require(tensor.shape == shape, "the tensor \"", name, part, "\" has shape ",
                 io::shape_text(tensor.shape), ", expected ", io::shape_text(shape));
