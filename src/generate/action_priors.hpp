@@ -16,6 +16,11 @@ struct GivenPrior {
 GivenPrior read_prior(const fs::path& file, const motion::PositionFormat& format, const ActionDataArgs& data,
                       double seconds);
 
+/// Seconds that the model's file keeps (ActionStart), those of class `label` if there are any, in turn; empty
+/// if it keeps none.
+std::vector<GivenPrior> kept_priors(const fs::path& file, const motion::PositionFormat& format,
+                                    std::size_t label, std::size_t first_sample, std::size_t count);
+
 /// Draws priors from the clips that the run held out for testing (split.tsv), of class `label` if there are
 /// any; prints a note if others must be used. The prior of a sample depends only on seed and sample.
 std::vector<GivenPrior> draw_priors(const fs::path& run, const motion::PositionFormat& format,

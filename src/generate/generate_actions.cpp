@@ -3,7 +3,6 @@
 
 #include "generate/action_priors.hpp"
 #include "motiongan/data/clip_source.hpp"
-#include "motiongan/models/action_starts.hpp"
 #include "motiongan/sample/action_generate.hpp"
 #include "motiongan/view/heat_map.hpp"
 #include "shared/action_files.hpp"
@@ -29,22 +28,6 @@ double asked_seconds(const ActionGenerateArgs& args, double rate) {
   if (args.frames > 0) return static_cast<double>(args.frames) / rate;
   if (args.seconds > 0) return args.seconds;
   return has_length(args) ? 0 : 10;
-}
-
-/// Seconds that the model's file keeps, those of class `label` if there are any, in turn; empty if it has
-/// none.
-std::vector<GivenPrior> kept_priors(const fs::path& file, const motion::PositionFormat& format,
-                                    std::size_t label, std::size_t first_sample, std::size_t count) {
-  std::vector<ActionStart> starts = starts_in(io::SafeTensors::read(file), format, file.string());
-  const auto other = [&](const ActionStart& start) { return start.label != label; };
-  if (!std::all_of(starts.begin(), starts.end(), other)) std::erase_if(starts, other);
-  std::vector<GivenPrior> out;
-  for (std::size_t i = 0; !starts.empty() && i < count; ++i) {
-    const ActionStart& start = starts[(first_sample + i) % starts.size()];
-    const double at = static_cast<double>(start.prior.first_frame) / format.rate;
-    out.push_back({start.prior, start.rotations, fmt::format("{} from {} on", start.prior.id, duration(at))});
-  }
-  return out;
 }
 
 /// The priors; `inputs` are the files, or the folder, that they were read from.

@@ -50,7 +50,7 @@ class ServedModel {
   PromptNotes notes_on(const std::string& prompt) const;
 
  private:
-  void find_priors(const ServedModelArgs& args, const CLI::App& verb);
+  void find_priors(const ServedModelArgs& args, const fs::path& file, const CLI::App& verb);
 
   std::string name_;
   std::optional<Dvgan> texts_;

@@ -5,6 +5,7 @@
 #include "command.hpp"
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/io/sha256.hpp"
+#include "server.hpp"
 
 namespace models_test {
 
@@ -81,6 +82,12 @@ TEST_CASE("the file of a class-conditioned model keeps seconds to continue, and 
   CHECK(made.has("walk_"));  // the clips that it says it continues
   for (const char* file : {"a/walk_000.bvh", "a/walk_001.bvh", "a/walk_002.bvh"})
     CHECK(motiongan::motion::read_bvh(file).frames == 28);
+
+  if (Server server("mover"); server.runs()) {
+    const Page page(server);
+    CHECK(page.model.at("classes") == true);
+    CHECK(page.request("POST", "/characters", R"({"prompt":"walk"})").status == 201);
+  }
 
   SUBCASE("the motion is that of the clip that the second is from") {
     REQUIRE(call("synth clips --clips 34 --seconds 4").status == 0);
