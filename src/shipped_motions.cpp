@@ -32,6 +32,7 @@ void show_shipped_motions(const Context& context, const fs::path& out) {
     fmt::print("no shipped model that takes a text is installed\n");
     return;
   }
+  make_folder(out / "shipped");
   const Cleaning cleaning{{"feet", "smooth"}, {}};
   std::vector<view::ViewedMotion> page;
   // Each model makes the next of its descriptions in turn.
@@ -41,7 +42,9 @@ void show_shipped_motions(const Context& context, const fs::path& out) {
     const std::size_t which = i / models.size();
     skipped = which < texts.size() ? 0 : skipped + 1;
     if (which >= texts.size()) continue;
-    motion::Motion made = model.generate(texts[which], {.count = 1, .seed = 1}).front();
+    motion::Motion made =
+        model.generate(texts[which], {.count = 1, .seed = 1, .first_sample = static_cast<std::uint32_t>(i)})
+            .front();
     made = motion::resample(cleaning.apply(std::move(made)), shown_rate);
     motion::write_bvh(out / "shipped" / (slug(texts[which]) + ".bvh"), made);
     page.push_back({texts[which], std::move(made)});

@@ -22,11 +22,11 @@ build_with() {
 }
 
 # build_with_libcxx COMPILER STANDARD: the headers with Clang's standard library, in a program that is run. The
-# command is left out: the libraries that it links were compiled with the other one.
+# command is left out: the libraries that it links were compiled with the other one. Clang 14 calls C++23 C++2b.
 build_with_libcxx() {
   local folder=$build/compilers/$1-$2-libc++
   mkdir -p "$folder"
-  (cd "$root" && "$1" "-std=c++$2" -stdlib=libc++ -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror \
+  (cd "$root" && "$1" "-std=c++${2/23/2b}" -stdlib=libc++ -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror \
     -Iinclude "-I$build/generated" tests/second_unit.cpp tests/second_unit_main.cpp -lOpenCL -lclblast -lz -o "$folder/second_unit" &&
     "$folder/second_unit") >"$folder/log.txt" 2>&1
 }

@@ -5,6 +5,7 @@
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/models/shipped_models.hpp"
 #include "shared/command.hpp"
+#include "shared/shell.hpp"
 
 namespace motiongan::command {
 namespace {
@@ -28,12 +29,14 @@ void print_shipped(const ShippedModel& model) {
   check_shipped(model);
   const std::string where = model.file.string();
   const io::SafeTensors file = io::SafeTensors::read(model.file);
+  std::string prompt;
   fmt::print("{}\n", model.name);
   if (holds_model<ActionGan>(file)) {
     const motion::PositionFormat format = model_format<ActionGan>(file, where);
     print_fact("makes", fmt::format("motion of any length in a class: {} after {}",
                                     frames_text(format.frames, format.rate), "the same of given motion"));
     print_fact("classes", some_of(format.classes, false));
+    prompt = "--class " + format.classes.front();
   } else {
     const motion::MotionFormat format = model_format<Dvgan>(file, where);
     const bool endless = model_options<Dvgan>(file, where).generator == GeneratorKind::rnn;
@@ -43,12 +46,14 @@ void print_shipped(const ShippedModel& model) {
     print_fact("words", fmt::format("{} in {}: {}", format.vocabulary.size() - 1,
                                     counted(format.descriptions.size(), "description"),
                                     some_of(format.descriptions, true)));
+    prompt = "--text " + shell_quoted(format.descriptions.empty() ? "walk" : format.descriptions.front());
   }
   print_fact("file",
              fmt::format("{} ({:.1f} MB)", where, 1e-6 * static_cast<double>(fs::file_size(model.file))));
   print_fact("SHA-256", model.sha256);
   const fs::path card = fs::path(model.file).replace_extension(".md");
   if (fs::exists(card)) print_fact("card", card.string());
+  print_fact("try", fmt::format("{} generate {} {} --html made.html", program(), model.name, prompt));
 }
 
 int list_models() {
@@ -60,7 +65,6 @@ int list_models() {
                 searched);
   }
   for (const ShippedModel& model : models) print_shipped(model);
-  fmt::print("try: {} generate {} --help\n", program(), models.front().name);
   return 0;
 }
 
