@@ -35,6 +35,8 @@ quietly inside "cd /root/try && apt-get install -y ./motiongan_*.deb"
 inside "cd /root/try
   motiongan --version
   motiongan devices
+  motiongan models
+  motiongan generate cmu-text --text walk --out shipped
   motiongan train dvgan --procedural 12 --generator rnn --hidden 16 --iterations 2 --batch 4 --save save
   motiongan generate save --text 'a person runs' --frames 50 --out made --html made.html
   ls made made.html
