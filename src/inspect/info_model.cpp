@@ -124,7 +124,8 @@ void print_tensors(const fs::path& path) {
       if (const std::size_t n = count_below(file, std::string(network) + "."); n > 0)
         print_fact(network, millions(n) + " parameters");
   } else {
-    print_fact("parameters", millions(numbers));
+    // The seconds to continue, in a file of a class-conditioned model, are no weights.
+    print_fact("parameters", millions(numbers - count_below(file, "start.")));
   }
   if (const auto at = file.metadata.find("options"); at != file.metadata.end())
     print_options("model", at->second);

@@ -1,6 +1,8 @@
 // Shipped models: packing a run, listing, and every way to name one.
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "../support/setting.hpp"
 #include "command.hpp"
 #include "motiongan/formats/bvh.hpp"
@@ -74,6 +76,12 @@ TEST_CASE("the file of a class-conditioned model keeps seconds to continue, and 
   const Said packed = call("pack run --out box/mover.safetensors --whole --starts 2");
   REQUIRE_MESSAGE(packed.status == 0, packed.text);
   CHECK(packed.has("with 6 seconds of motion to continue"));
+  const auto parameters = [](const std::string& model) {
+    const std::string text = call("info " + model).text;
+    const std::size_t at = text.find("  parameters ");
+    return text.substr(at, text.find('\n', at) - at);
+  };
+  CHECK(parameters("box/mover.safetensors") == parameters("run/generator.safetensors"));
   fs::remove_all("clips");
   const Setting here("MOTIONGAN_MODELS", (fs::current_path() / "box").c_str());
   CHECK(call("models").has("classes     jump, run, walk"));
@@ -109,6 +117,39 @@ TEST_CASE("the file of a class-conditioned model keeps seconds to continue, and 
     CHECK(call("generate bare --class walk").has("give the second to continue with --from CLIP: "));
     CHECK(call("pack box/mover.safetensors --out box/more.safetensors").has("is not the folder of a run"));
   }
+}
+
+TEST_CASE("every model in the box has a card, is of at most 12 MB, and makes motion") {
+  const TestFolder folder;
+  const fs::path box = fs::path(MOTIONGAN_COMMAND).parent_path() / "models";
+  const std::string list = bytes_of(box / "SHA256SUMS"), table = bytes_of(box / "README.md");
+  const Said models = call("models");
+  std::size_t count = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(box)) {
+    const fs::path file = entry.path();
+    if (file.extension() != ".safetensors") continue;
+    const std::string name = file.stem().string();
+    CAPTURE(name);
+    ++count;
+    CHECK(fs::file_size(file) <= 12'000'000);
+    CHECK(list.find(motiongan::io::sha256(bytes_of(file)) + "  " + name + ".safetensors\n") !=
+          std::string::npos);
+    CHECK(table.find("](" + name + ".md)") != std::string::npos);
+    const std::string card = bytes_of(box / (name + ".md"));
+    for (const char* part :
+         {"## Beside real motion", "## Weaknesses", "## Acknowledgement", "NSF EIA-0196217"})
+      CHECK(card.find(part) != std::string::npos);
+    CHECK(models.has(name + "\n"));
+    const bool classes = call("info " + name).has("attention_generator");
+    const std::string out = " --out out-" + name;
+    const Said made =
+        call("generate " + name + (classes ? " --class walk --seconds 2" : " --text walk") + out);
+    REQUIRE_MESSAGE(made.status == 0, made.text);
+    const motiongan::motion::Clip clip = motiongan::motion::read_bvh("out-" + name + "/walk_000.bvh");
+    CHECK(static_cast<double>(clip.frames) * clip.frame_time >= 2);
+    for (const double value : clip.channels) REQUIRE(std::isfinite(value));
+  }
+  CHECK(count >= 2);
 }
 
 }  // namespace models_test
