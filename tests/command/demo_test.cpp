@@ -14,10 +14,12 @@ TEST_CASE("the demo writes what it promises, again and again, and spares other p
     CHECK(said.has("wrote demo-out/bvh: 18 BVH files"));
     CHECK(said.has("The Wasserstein estimate"));
     CHECK(said.has("motiongan train dvgan my-clips"));
-    for (const char* file :
-         {"shipped.html", "shipped.png", "shipped/walk.bvh", "motions.html", "poses.png", "training.png",
-          "README.txt", "bvh/walk_generated_1.bvh", "save/generator.safetensors"})
+    for (const char* file : {"shipped.html", "shipped.png", "shipped/walk.bvh", "shipped/karate.bvh",
+                             "motions.html", "poses.png", "training.png", "README.txt",
+                             "bvh/walk_generated_1.bvh", "save/generator.safetensors"})
       CHECK(fs::exists(fs::path("demo-out") / file));
+    const fs::directory_iterator shipped("demo-out/shipped");
+    CHECK(std::distance(begin(shipped), end(shipped)) == 12);
     write_file("demo-out/bvh/old.bvh", "from the run before");
   }
   fs::remove("demo-out/bvh/old.bvh");
