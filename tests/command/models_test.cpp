@@ -126,7 +126,7 @@ TEST_CASE("every model in the box has a card, is of at most 12 MB, and makes mot
   const Said models = call("models");
   std::size_t count = 0;
   for (const fs::directory_entry& entry : fs::directory_iterator(box)) {
-    const fs::path file = entry.path();
+    const fs::path& file = entry.path();
     if (file.extension() != ".safetensors") continue;
     const std::string name = file.stem().string();
     CAPTURE(name);
@@ -141,9 +141,8 @@ TEST_CASE("every model in the box has a card, is of at most 12 MB, and makes mot
       CHECK(card.find(part) != std::string::npos);
     CHECK(models.has(name + "\n"));
     const bool classes = call("info " + name).has("attention_generator");
-    const std::string out = " --out out-" + name;
-    const Said made =
-        call("generate " + name + (classes ? " --class walk --seconds 2" : " --text walk") + out);
+    const Said made = call(motiongan::concat("generate ", name, " --out out-", name,
+                                             classes ? " --class walk --seconds 2" : " --text walk"));
     REQUIRE_MESSAGE(made.status == 0, made.text);
     const motiongan::motion::Clip clip = motiongan::motion::read_bvh("out-" + name + "/walk_000.bvh");
     CHECK(static_cast<double>(clip.frames) * clip.frame_time >= 2);
