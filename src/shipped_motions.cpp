@@ -2,6 +2,7 @@
 #include "shipped_motions.hpp"
 
 #include <functional>
+#include <iterator>
 
 #include "generate/action_priors.hpp"
 #include "motiongan/formats/bvh.hpp"
@@ -20,23 +21,26 @@ constexpr double shown_rate = 30, class_seconds = 3;
 
 /// A shipped model, of either kind.
 struct ShownModel {
-  std::vector<std::string> subjects;  ///< descriptions or classes, best known first
+  std::vector<std::string> subjects;  ///< descriptions or classes, in the model's order
   std::function<motion::Motion(std::size_t subject, std::uint32_t sample)> make;
 };
 
 ShownModel shown_text_model(Dvgan model) {
   std::vector<std::string> texts = model.format().descriptions;
-  return {texts, [texts, model = std::move(model)](std::size_t subject, std::uint32_t sample) {
-            return model.generate(texts[subject], {.count = 1, .seed = 1, .first_sample = sample}).front();
+  return {std::move(texts), [model = std::move(model)](std::size_t subject, std::uint32_t sample) {
+            return model
+                .generate(model.format().descriptions[subject],
+                          {.count = 1, .seed = 1, .first_sample = sample})
+                .front();
           }};
 }
 
 ShownModel shown_class_model(ActionGan model, const fs::path& file) {
   std::vector<std::string> classes = model.format().classes;
-  return {classes, [classes, file, model = std::move(model)](std::size_t subject, std::uint32_t sample) {
+  return {std::move(classes), [file, model = std::move(model)](std::size_t subject, std::uint32_t sample) {
             const GivenPrior start = kept_priors(file, model.format(), subject, 0, 1).at(0);
             const ActionSchedule schedule =
-                parse_action_schedule(classes[subject], model.format(), class_seconds);
+                parse_action_schedule(model.format().classes[subject], model.format(), class_seconds);
             const auto clips = model.generate(std::vector{start.prior}, schedule,
                                               {.with_prior = false, .seed = 1, .first_sample = sample});
             return motion_from_positions(clips.front(), start.reference);
@@ -46,23 +50,23 @@ ShownModel shown_class_model(ActionGan model, const fs::path& file) {
 /// The shipped models, those that take a text first. A model of classes whose file keeps no second to
 /// continue is left out.
 std::vector<ShownModel> shown_models(const Context& context) {
-  std::vector<ShownModel> texts, classes;
+  std::vector<ShownModel> out, of_classes;
   for (const ShippedModel& model : shipped_models()) {
     check_shipped(model);
     const io::SafeTensors file = io::SafeTensors::read(model.file);
     const std::string where = model.file.string();
-    if (holds_model<Dvgan>(file)) texts.push_back(shown_text_model(model_from<Dvgan>(context, file, where)));
+    if (holds_model<Dvgan>(file)) out.push_back(shown_text_model(model_from<Dvgan>(context, file, where)));
     if (holds_model<ActionGan>(file) && file.metadata.contains("starts"))
-      classes.push_back(shown_class_model(model_from<ActionGan>(context, file, where), model.file));
+      of_classes.push_back(shown_class_model(model_from<ActionGan>(context, file, where), model.file));
   }
-  for (ShownModel& model : classes) texts.push_back(std::move(model));
-  return texts;
+  std::move(of_classes.begin(), of_classes.end(), std::back_inserter(out));
+  return out;
 }
 
 }  // namespace
 
 void show_shipped_motions(const Context& context, const fs::path& out) {
-  std::vector<ShownModel> models = shown_models(context);
+  const std::vector<ShownModel> models = shown_models(context);
   if (models.empty()) {
     fmt::print("no shipped model is installed\n");
     return;
