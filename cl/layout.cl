@@ -152,13 +152,13 @@ kernel void gather_windows(global const real* poses, uint poses0, global const i
   }
 }
 
-/// out[r, :] += x[r, :] for `rows` rows of `run` elements.
-kernel void add_rows(global const real* x, uint x0, uint x_stride, global real* out, uint out0,
+/// out[r, :] += factor * x[r, :] for `rows` rows of `run` elements.
+kernel void add_rows(global const real* x, uint x0, uint x_stride, real factor, global real* out, uint out0,
                      uint out_stride, uint rows, uint run) {
   const uint columns = (run + VW - 1) / VW, item = get_global_id(0);
   const uint r = item / columns, j = item % columns * VW;
   if (r >= rows) return;
   const uint left = run - j;
   global real* to = out + out0 + r * out_stride + j;
-  store_some(load_some(to, left) + load_some(x + x0 + r * x_stride + j, left), to, left);
+  store_some(load_some(to, left) + factor * load_some(x + x0 + r * x_stride + j, left), to, left);
 }

@@ -138,7 +138,8 @@ TEST_CASE("generate, view, info and compare, from a model of three iterations") 
 
 TEST_CASE("an RNN model makes any number of frames") {
   const TestFolder folder;
-  REQUIRE(call("train dvgan --procedural 6 --save run --iterations 2" + tiny_rnn).status == 0);
+  // Without a leak, for the motion of an untrained model with one is too small to be cleaned up.
+  REQUIRE(call("train dvgan --procedural 6 --save run --iterations 2 --leak 0" + tiny_rnn).status == 0);
 
   SUBCASE("the files are those of the library; a table tells of drift") {
     const Said said = call("generate run --text walk --count 2 --frames 3000 --out a --drift d/drift.csv");

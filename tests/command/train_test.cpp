@@ -88,6 +88,10 @@ TEST_CASE("the recurrent networks: any number of frames, stopped and resumed") {
   const Said model = call("info whole/generator.safetensors");
   CHECK(model.has("dvgan_rnn_generator"));
   CHECK(model.has("final-cut off"));
+  const Said leaky = call(train + " --leak 0.1 --iterations 1 --save leaky");
+  CHECK_MESSAGE(leaky.has("leak 0.1"), leaky.text);
+  CHECK(call("info leaky/generator.safetensors").has("leak 0.1"));
+  CHECK(call("train dvgan --procedural 6 --leak 0.1 --save other").has("--leak needs --generator rnn"));
   const Said cnn_critic = call("train dvgan --procedural 6 --generator rnn --frames 12 --save other");
   CHECK(cnn_critic.status == 1);
   CHECK(cnn_critic.has("12; the nearest are 8 and 16"));

@@ -159,6 +159,25 @@ TEST_CASE("the RNN generator with final cut returns a part of the longer motion"
         frames);
 }
 
+TEST_CASE("the leak of an RNN generator is kept in its file; a file without one has none") {
+  const Dvgan plain = made({.generator = GeneratorKind::rnn, .hidden = 12});
+  Dvgan leaky = made({.generator = GeneratorKind::rnn, .hidden = 12, .leak = 0.125});
+  const Poses motion = leaky.generate_poses(caption, {.seed = 5});
+  CHECK(motion != plain.generate_poses(caption, {.seed = 5}));
+  const auto path = scratch("leak");
+  leaky.save(path);
+  CHECK(Dvgan::load(context(), path).generate_poses(caption, {.seed = 5}) == motion);
+  io::SafeTensors file = io::SafeTensors::read(path);
+  file.metadata["options"] = R"({"final_cut":false,"hidden":12})";
+  file.write(path);
+  CHECK(Dvgan::load(context(), path).options().leak == 0);
+  CHECK(Dvgan::load(context(), path).generate_poses(caption, {.seed = 5}) ==
+        plain.generate_poses(caption, {.seed = 5}));
+  std::filesystem::remove(path);
+  CHECK(message_of([&] { made({.generator = GeneratorKind::rnn, .leak = 1}); }) ==
+        "leak is 1, expected 0 to 0.99");
+}
+
 TEST_CASE("the error for what only an RNN generator can do says what to use") {
   const Dvgan model = made();
   for (const std::string& text :

@@ -20,25 +20,33 @@ const Context& context() {
   return c;
 }
 
+RnnGenerator made(double leak) {
+  return RnnGenerator(Initializer(context(), 3),
+                      {.vocabulary = words, .dof = dof, .frames = 12, .hidden = hidden, .leak = leak});
+}
 const RnnGenerator& model() {
-  static const RnnGenerator generator(Initializer(context(), 3),
-                                      {.vocabulary = words, .dof = dof, .frames = 12, .hidden = hidden});
+  static const RnnGenerator generator = made(0);
+  return generator;
+}
+const RnnGenerator& leaky() {
+  static const RnnGenerator generator = made(0.1);
   return generator;
 }
 
 /// Motion [frames, dof] of the generator in one call.
-std::vector<float> at_once(const StreamStart& start, std::size_t frames,
-                           const std::vector<float>& prior = {}) {
+std::vector<float> at_once(const StreamStart& start, std::size_t frames, const std::vector<float>& prior = {},
+                           const RnnGenerator& generator = model()) {
   const NoGrad values_only;
-  const Var z = model().noise(context(), {.seed = start.seed, .first_sample = start.sample}, 1, frames);
+  const Var z = generator.noise(context(), {.seed = start.seed, .first_sample = start.sample}, 1, frames);
   const Var seed =
       prior.empty() ? Var() : Var::constant(Tensor::from(context(), {prior.size() / dof, 1, dof}, prior));
-  return model()(Sentences(context(), {start.sentence}, words), z, {}, seed).value().to_host();
+  return generator(Sentences(context(), {start.sentence}, words), z, {}, seed).value().to_host();
 }
 
 /// Collects a stream's frames by motion.
 struct Recorder {
-  RnnStream stream{model()};
+  explicit Recorder(const RnnGenerator& generator = model()) : stream(generator) {}
+  RnnStream stream;
   std::map<StreamId, std::vector<float>> motions;
   void step(std::size_t frames) {
     const std::span<const float> made = stream.step(frames);
@@ -122,6 +130,38 @@ TEST_CASE("a prior is continued as by the generator; several motions may share o
       CHECK(whole == at_once(i == 0 ? a : b, n + 8, seed));
     }
   }
+}
+
+TEST_CASE("with a leak: steps equal one call, with a prior and without") {
+  Recorder r(leaky());
+  const StreamId free = r.stream.add({a})[0];
+  r.step(3);
+  const StreamId continued = r.stream.add({b}, prior(5), 5)[0];
+  r.step(20);
+  CHECK(r.motions[free] == at_once(a, 23, {}, leaky()));
+  const std::vector<float> whole = at_once(b, 25, prior(5), leaky());
+  CHECK(r.motions[continued] == std::vector<float>(whole.begin() + 5 * dof, whole.end()));
+  CHECK(at_once(a, 23) != at_once(a, 23, {}, leaky()));
+}
+
+TEST_CASE("with a leak a motion stays within a bound, without one it may leave it") {
+  // |h| < 1, so a change is at most the sum of |Wd| and |bd|, and a leak of 0.1 holds ten changes.
+  const auto farthest = [](const RnnGenerator& generator, const std::vector<float>& motion) {
+    std::vector<float> weight = generator.fold().rollout.diff.value().to_host(),
+                       bias = generator.fold().rollout.diff_bias.value().to_host();
+    double worst = 0;  // in changes
+    for (std::size_t i = motion.size() - dof; i < motion.size(); ++i) {
+      const std::size_t j = i % dof;
+      double change = std::abs(bias[j]);
+      for (std::size_t h = 0; h < hidden; ++h) change += std::abs(weight[j * hidden + h]);
+      worst = std::max(worst, std::abs(motion[i]) / change);
+    }
+    return worst;
+  };
+  std::vector<float> far = prior(1);
+  for (float& x : far) x = 1000;
+  CHECK(farthest(leaky(), at_once(a, 300, far, leaky())) < 10);
+  CHECK(farthest(model(), at_once(a, 300, far)) > 10);
 }
 
 TEST_CASE("a new text changes the rest of a motion, and no other motion") {

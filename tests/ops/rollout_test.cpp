@@ -27,9 +27,13 @@ std::vector<Input> inputs(std::size_t frames, std::size_t batch, std::size_t dof
   return all;
 }
 
-Var fused(const std::vector<Var>& v) { return rollout(v[0], v[1], {v[2], v[3], v[4], v[5], v[6]}); }
-Var composed(const std::vector<Var>& v) {
-  return detail::rollout_composed(v[0], v[1], {v[2], v[3], v[4], v[5], v[6]});
+auto fused(double leak = 0) {
+  return [leak](const std::vector<Var>& v) {
+    return rollout(v[0], v[1], {v[2], v[3], v[4], v[5], v[6], leak});
+  };
+}
+Var composed(const std::vector<Var>& v, double leak) {
+  return detail::rollout_composed(v[0], v[1], {v[2], v[3], v[4], v[5], v[6], leak});
 }
 
 }  // namespace
@@ -40,18 +44,21 @@ TEST_CASE("rollout: derivatives with respect to every input, with and without gi
        {std::array<std::size_t, 3>{4, 3, 1}, {5, 3, 3}, {3, 5, 3}, {2, 9, 1}}) {
     CAPTURE(frames);
     CAPTURE(given);
-    CHECK(check_grads(double_context(), fused, inputs(frames, 2, 3, k, given), 2) < 1e-7);
+    CHECK(check_grads(double_context(), fused(), inputs(frames, 2, 3, k, given), 2) < 1e-7);
+    CHECK(check_grads(double_context(), fused(0.25), inputs(frames, 2, 3, k, given), 2) < 1e-7);
   }
-  CHECK(check_grads(double_context(), fused, inputs(3, 2, 2, 2, 1), 3) < 1e-7);
+  CHECK(check_grads(double_context(), fused(), inputs(3, 2, 2, 2, 1), 3) < 1e-7);
 }
 
 TEST_CASE("rollout: the fused form equals the composed one" * doctest::test_suite("double")) {
-  for (std::size_t given : {1u, 4u, 9u}) {
+  for (const auto& [given, leak] :
+       {std::pair<std::size_t, double>{1, 0}, {4, 0}, {9, 0}, {1, 0.1}, {4, 0.5}}) {
     CAPTURE(given);
+    CAPTURE(leak);
     std::vector<Var> x;
     for (const Input& i : inputs(9, 3, 7, 20, given))
       x.push_back(Var::leaf(Tensor::from(double_context(), i.shape, i.values)));
-    const Var a = fused(x), b = composed(x);
+    const Var a = fused(leak)(x), b = composed(x, leak);
     const Input u = randn(a.shape());
     const Var seed = Var::constant(Tensor::from(double_context(), u.shape, u.values));
     const std::vector<Var> ga = grad({a}, {seed}, x), gb = grad({b}, {seed}, x);
@@ -78,6 +85,10 @@ TEST_CASE("rollout: one frame returns the given one; wrong shapes are rejected" 
   CHECK_THROWS_WITH_AS(rollout(value({3, 4, 3}), value({1, 4, 8}), w),
                        "rollout: given [3, 4, 3], gates [1, 4, 8], weights [8, 5], [8, 4], [3, 2]", Error);
   CHECK_THROWS_AS(rollout(value({1, 4, 3}), value({1, 5, 8}), w), Error);
+  RolloutWeights empty = w;
+  empty.leak = 1;
+  CHECK_THROWS_WITH_AS(rollout(value({2, 4, 3}), value({1, 4, 8}), empty),
+                       "rollout: leak 1, expected at least 0 and below 1", Error);
 }
 
 }  // namespace rollout_test

@@ -26,7 +26,8 @@ struct DvganOptions {
   std::size_t hidden = 256;                      ///< k, hidden width
   std::size_t taps = 3;                          ///< kernel size of the CNN's convolutions: 3 or 5
   std::optional<bool> final_cut = {};  ///< make 2N frames, keep N; not set: on for the CNN, off for the RNN
-  std::uint64_t seed = 1;              ///< seed of the initial weights
+  double leak = 0;  ///< RNN: share of the pose that is lost in a frame, in [0, 1); 0: none, as the paper
+  std::uint64_t seed = 1;  ///< seed of the initial weights
 
   /// Whether final cut is on.
   bool cuts() const { return final_cut.value_or(generator == GeneratorKind::cnn); }
@@ -38,6 +39,11 @@ struct DvganOptions {
     list.add(final_cut,
              {.key = "final_cut",
               .help = "generate twice the frames and keep half of them [on for the CNN generator]"});
+    list.add(leak,
+             {.key = "leak",
+              .help = "share of the pose that the RNN generator loses in a frame, so that the errors of "
+                      "long motions do not add up; 0: none",
+              .range = Range::between(0, 0.99)});
     list.add(hidden, {.key = "hidden", .help = "width of the networks", .range = Range::between(1, 65536)});
     list.add(taps, {.key = "taps", .help = "taps of the convolutions: 3 or 5", .choices = {3, 5}});
   }
@@ -196,7 +202,8 @@ class Dvgan {
                                  .dof = format.dof(),
                                  .frames = format.frames,
                                  .hidden = options.hidden,
-                                 .final_cut = options.cuts()});
+                                 .final_cut = options.cuts(),
+                                 .leak = options.leak});
     return CnnGenerator(init, {.vocabulary = format.vocabulary.size(),
                                .dof = format.dof(),
                                .frames = format.frames,

@@ -13,16 +13,20 @@ struct RnnGeneratorOptions {
   std::size_t frames = 64;     ///< N, frames per window; any number
   std::size_t hidden = 256;    ///< k, hidden width
   bool final_cut = false;      ///< generate 2N frames and keep N consecutive ones
+  double leak = 0;             ///< share of the pose that is lost in a frame, see RolloutWeights
 };
 
 /// Generates motion frame by frame: a two-layer LSTM reads the previous pose and the frame's plot (text and
-/// noise), and its output is added to the pose. Motion can be of any length and can continue given frames.
+/// noise), and its output is added to the pose, which leaks if that is asked for. Motion can be of any length
+/// and can continue given frames.
 class RnnGenerator {
  public:
   /// Throws Error if a size is 0.
   RnnGenerator(Initializer init, const RnnGeneratorOptions& options) : options_(options) {
     require(options.vocabulary > 0 && options.dof > 0 && options.hidden > 0 && options.frames > 0,
             "RnnGenerator: vocabulary, dof, frames and hidden must be positive");
+    require(options.leak >= 0 && options.leak < 1, "RnnGenerator: leak ", options.leak,
+            ", expected at least 0 and below 1");
     const std::size_t k = options.hidden;
     text_ = TextEncoder(init, options.vocabulary, k);
     initial_plot_ = PlotLayer(init, k);
@@ -77,7 +81,8 @@ class RnnGenerator {
          .layer1 = concatenate({second.weight_ih, second.weight_hh}, 1),
          .bias1 = second.bias_ih + second.bias_hh,
          .diff = diff_.weight,
-         .diff_bias = diff_.bias},
+         .diff_bias = diff_.bias,
+         .leak = options_.leak},
         reshape(matmul(by_plot, out), {1, 4 * k, k}),
         first.bias_ih + first.bias_hh + through(frame_.bias, by_frame) + through(plot_.out.bias, by_plot)};
     if (in_16_bits_)  // products of rounded weights are not rounded

@@ -301,6 +301,8 @@ class RnnStream {
     move_.residual_offset = now;
     move_.c_offset = next;
     gemm(context_, move_);
+    if (const double leak = folded_.rollout.leak; leak > 0)
+      detail::add_poses(context_, rows_, now, next, batch, dof_, width(), -leak);
     half_ = 1 - half_;
     --ready_;
     ++tick_;

@@ -4,7 +4,7 @@
 // In step t two LSTM layers of hidden size k read the previous pose and predict the change of pose:
 //   gates0_t = x_t + [a_{t-1} | h0_{t-1}] W0^T        h0_t, c0_t = cell(gates0_t, c0_{t-1})
 //   gates1_t = b1  + [h0_t | h1_{t-1}] W1^T           h1_t, c1_t = cell(gates1_t, c1_{t-1})
-//   a_t = a_{t-1} + h1_t Wd^T + bd                    (or the given pose, for seed frames)
+//   a_t = (1 - leak) a_{t-1} + h1_t Wd^T + bd         (or the given pose, for seed frames)
 // The rows of a step are stored as [a_t | h0_t | h1_{t-1}], so that the input of each layer is contiguous
 // within a row and needs one matrix product.
 #pragma once
@@ -21,6 +21,9 @@ struct RolloutWeights {
   Var bias1;      ///< b1 [4k]
   Var diff;       ///< Wd [M, k]
   Var diff_bias;  ///< bd [M]
+  /// Share of the pose that is lost from one frame to the next: 0 in the paper. With it the pose is a leaky
+  /// integral of the changes, so that their errors do not add up.
+  double leak = 0;
 };
 
 namespace detail {
@@ -53,6 +56,14 @@ struct RolloutLayers {
   RolloutLayers(const Context& context, const RolloutWeights& w, bool in_16_bits = false)
       : first(context, w.layer0.value(), in_16_bits), second(context, w.layer1.value(), in_16_bits) {}
 };
+
+/// The row `out` += factor x, for poses of M values in rows of `width` values.
+inline void add_poses(const Context& context, const Tensor& rows, std::size_t x, std::size_t out,
+                      std::size_t batch, std::size_t dof, std::size_t width, double factor) {
+  context.launch("layout", "add_rows", LaunchGrid::items(batch * vectors(context, dof)),
+                 At{rows, x, batch * dof}, width, KernelReal{factor}, At{rows, out, batch * dof}, width,
+                 batch, dof);
+}
 
 /// Runs all steps. `keep` keeps the gates of all steps, as rollout_backward needs them.
 inline RolloutTrace rollout_forward(const Tensor& given, const Tensor& x_gates, const RolloutWeights& w,
@@ -102,13 +113,15 @@ inline RolloutTrace rollout_forward(const Tensor& given, const Tensor& x_gates, 
     move.c_offset = s.pose_at(t);
     move.residual_offset = s.pose_at(t - 1);
     gemm(context, move);
+    if (w.leak > 0)
+      add_poses(context, trace.rows, s.pose_at(t - 1), s.pose_at(t), batch, s.dof, s.width(), -w.leak);
   }
   return trace;
 }
 
 /// Gradients with respect to given, x_gates, W0, W1, b1, Wd and bd, given the motion's gradient g [N, B, M].
-inline std::vector<Tensor> rollout_backward(const RolloutTrace& trace, const Node& self, const Tensor& g,
-                                            const Needs& needs) {
+inline std::vector<Tensor> rollout_backward(const RolloutTrace& trace, double leak, const Node& self,
+                                            const Tensor& g, const Needs& needs) {
   const Context& context = g.context();
   const RolloutShape& s = trace.shape;
   const std::size_t k = s.k, batch = s.batch, frames = s.frames;
@@ -143,9 +156,7 @@ inline std::vector<Tensor> rollout_backward(const RolloutTrace& trace, const Nod
       move.a_offset[0] = s.pose_at(t);
       move.c_offset = s.h1_at(t);
       gemm(context, move);
-      context.launch("layout", "add_rows", LaunchGrid::items(batch * vectors(context, s.dof)),
-                     At{rows, s.pose_at(t), batch * s.dof}, s.width(),
-                     At{rows, s.pose_at(t - 1), batch * s.dof}, s.width(), batch, s.dof);
+      add_poses(context, rows, s.pose_at(t), s.pose_at(t - 1), batch, s.dof, s.width(), 1 - leak);
     }
     cell(trace.gates1, trace.c1, s.h1_at(t), dc1, gates1, t);
     second.a_offset[0] = s.gates_at(t);
@@ -203,8 +214,9 @@ inline Var rollout_composed(const Var& given, const Var& x_gates, const RolloutW
              matmul(concatenate({a, h0}, 1), w.layer0, false, true),
          h0, c0);
     cell(rows(w.bias1) + matmul(concatenate({h0, h1}, 1), w.layer1, false, true), h1, c1);
-    a = t < given.dim(0) ? reshape(slice(given, 0, t, 1), {batch, dof})
-                         : a + matmul(h1, w.diff, false, true) + rows(w.diff_bias);
+    a = t < given.dim(0)
+            ? reshape(slice(given, 0, t, 1), {batch, dof})
+            : (w.leak > 0 ? (1 - w.leak) * a : a) + matmul(h1, w.diff, false, true) + rows(w.diff_bias);
     motion.push_back(reshape(a, {1, batch, dof}));
   }
   return concatenate(motion, 0);
@@ -214,7 +226,8 @@ inline Var rollout_composed(const Var& given, const Var& x_gates, const RolloutW
 
 /// Generates a motion [N, B, M] that continues the seed frames `given` [n, B, M], 1 <= n <= N (Lin & Amer,
 /// eq. 4). `x_gates` [N-1, B, 4k] is added to the first layer's gates of steps 1 .. N-1: plots and biases.
-/// Initial states are zero; the LSTM also runs over the seed frames. Throws Error if the shapes do not fit.
+/// Initial states are zero; the LSTM also runs over the seed frames. Throws Error if the shapes do not fit
+/// or if the leak is not in [0, 1).
 inline Var rollout(const Var& given, const Var& x_gates, const RolloutWeights& w) {
   const std::size_t k = w.diff.dim(1), dof = w.diff.dim(0), frames = x_gates.dim(0) + 1;
   require(given.value().rank() == 3 && given.dim(2) == dof && given.dim(0) >= 1 && given.dim(0) <= frames &&
@@ -222,6 +235,7 @@ inline Var rollout(const Var& given, const Var& x_gates, const RolloutWeights& w
               w.layer0.shape() == Shape{4 * k, dof + k} && w.layer1.shape() == Shape{4 * k, 2 * k},
           "rollout: given ", given.shape(), ", gates ", x_gates.shape(), ", weights ", w.layer0.shape(), ", ",
           w.layer1.shape(), ", ", w.diff.shape());
+  require(w.leak >= 0 && w.leak < 1, "rollout: leak ", w.leak, ", expected at least 0 and below 1");
   if (frames == 1) return given;
   const detail::RolloutTrace trace =
       detail::rollout_forward(given.value(), x_gates.value(), w, detail::recording());
@@ -230,11 +244,11 @@ inline Var rollout(const Var& given, const Var& x_gates, const RolloutWeights& w
   detail::copy_runs(trace.rows, 0, s.width(), motion, 0, dof, frames * s.batch, dof);
   return detail::fused(
       "rollout", {given, x_gates, w.layer0, w.layer1, w.bias1, w.diff, w.diff_bias}, std::move(motion),
-      [trace](const Node& self, const Tensor& g, const Needs& needs) {
-        return detail::rollout_backward(trace, self, g, needs);
+      [trace, leak = w.leak](const Node& self, const Tensor& g, const Needs& needs) {
+        return detail::rollout_backward(trace, leak, self, g, needs);
       },
-      [](const std::vector<Var>& in) {
-        return detail::rollout_composed(in[0], in[1], {in[2], in[3], in[4], in[5], in[6]});
+      [leak = w.leak](const std::vector<Var>& in) {
+        return detail::rollout_composed(in[0], in[1], {in[2], in[3], in[4], in[5], in[6], leak});
       });
 }
 
