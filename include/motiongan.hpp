@@ -60,6 +60,7 @@ namespace view {}
 #include "motiongan/motion/root_joint.hpp"
 #include "motiongan/motion/root_track.hpp"
 #include "motiongan/motion/rotation.hpp"
+#include "motiongan/motion/untwist.hpp"
 //
 #include "motiongan/formats/amass.hpp"
 #include "motiongan/formats/amc.hpp"

@@ -1,5 +1,6 @@
 // motiongan clean: cleans up clips that exist.
 #include "motiongan/formats/bvh.hpp"
+#include "motiongan/motion/untwist.hpp"
 #include "shared/cleaning.hpp"
 #include "shared/clip_reading.hpp"
 #include "shared/outputs.hpp"
@@ -13,6 +14,7 @@ struct CleanArgs {
   std::vector<std::string> files;
   std::string out, html;
   Cleaning cleaning;
+  bool untwist = false;
   motion::ClipOptions clips{.first_frame = motion::FirstFrame::keep};
 };
 
@@ -27,7 +29,7 @@ void print_change(const std::vector<motion::Motion>& before, const std::vector<m
 }
 
 int clean_clips(CleanArgs args) {
-  if (!args.cleaning.on()) args.cleaning.parts = {"feet", "smooth"};
+  if (!args.cleaning.on() && !args.untwist) args.cleaning.parts = {"feet", "smooth"};
   const std::vector<fs::path> inputs = inputs_of(args.files, {args.clips.bones.string()});
   const fs::path out = args.out;
   check_output_folder("--out", out, inputs);
@@ -36,14 +38,14 @@ int clean_clips(CleanArgs args) {
   std::vector<view::ViewedMotion> shown;
   std::vector<fs::path> files;
   for (const std::string& given : args.files)
-    for_each_clip(given, args.clips,
-                  [&](const fs::path&, const std::string& id, motion::LoadedMotion&& loaded) {
-                    files.push_back(out / (id + ".bvh"));
-                    after.push_back(args.cleaning.apply(loaded.motion));
-                    before.push_back(std::move(loaded.motion));
-                    shown.push_back({id, for_page(before.back(), 0)});
-                    shown.push_back({id + ", cleaned", for_page(after.back(), 0)});
-                  });
+    for_each_clip(
+        given, args.clips, [&](const fs::path&, const std::string& id, motion::LoadedMotion&& loaded) {
+          files.push_back(out / (id + ".bvh"));
+          after.push_back(args.cleaning.apply(args.untwist ? untwisted(loaded.motion) : loaded.motion));
+          before.push_back(std::move(loaded.motion));
+          shown.push_back({id, for_page(before.back(), 0)});
+          shown.push_back({id + ", cleaned", for_page(after.back(), 0)});
+        });
   check_outputs("--out", files, inputs);
   for (std::size_t i = 0; i < files.size(); ++i) {
     make_folder(files[i].parent_path());
@@ -68,7 +70,12 @@ const Verb clean_verb{
           ->type_name("DIR");
       verb->add_option("--html", args->html, "also write an HTML page: each clip before and after")
           ->type_name("FILE");
-      add_clean_options(*verb, args->cleaning, "both");
+      add_clean_options(*verb, args->cleaning, "both, without --untwist");
+      verb->add_flag(
+              "--untwist", args->untwist,
+              "find all rotations anew from the places of the joints, as those of class models are, so "
+              "that one ranker can judge both")
+          ->group("Clean-up");
       add_reading_options(*verb, args->clips, true);
       verb->callback([&job, args] { job = [args] { return clean_clips(*args); }; });
     }};

@@ -212,6 +212,11 @@ TEST_CASE("an RNN model makes any number of frames") {
     streamed = join(std::move(streamed), stream.finish());
     CHECK(motiongan::mean_jerk(cleaned) == doctest::Approx(motiongan::mean_jerk(streamed)).epsilon(1e-3));
     CHECK(bytes_of("c.html").find("walk_000, cleaned") != std::string::npos);
+    const Said plain = call("clean b --untwist --out u");
+    CHECK_MESSAGE(plain.status == 0, plain.text);
+    CHECK(bytes_of("u/walk_000.bvh") != bytes_of("b/walk_000.bvh"));
+    CHECK(motiongan::mean_jerk(to_motion(read_bvh("u/walk_000.bvh"))) ==
+          doctest::Approx(motiongan::mean_jerk(made)).epsilon(1e-3));
     CHECK(call("clean b --out b").status == 1);
     CHECK(call("clean b/walk_000.bvh --out b").has("is an input"));
     CHECK(call("generate run --text walk --clean hands").status != 0);

@@ -18,6 +18,7 @@
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/motion/motion.hpp"
 #include "motiongan/motion/root_joint.hpp"
+#include "motiongan/motion/untwist.hpp"
 #include "motiongan/procedural/procedural.hpp"
 
 namespace position_rotations_test {
@@ -229,6 +230,21 @@ TEST_CASE("forward kinematics of the rotations reproduces the positions") {
       for (std::size_t j = 0; j < m.skeleton.size(); ++j)
         REQUIRE(dot(m.rotation(f, j), m.rotation(f - 1, j)) >= 0);
   }
+}
+
+TEST_CASE("without twists the joints are where they were, and what they do not tell is gone") {
+  const Motion made = procedural_motion(0, {.seconds = 1}).motion;
+  Motion turned = made;
+  for (std::size_t f = 0; f < made.frames; ++f)
+    turned.rotation(f, procedural::head) =
+        multiply(made.rotation(f, procedural::head), axis_rotation(1, 0.7));
+  const Motion plain = untwisted(turned);
+  CHECK(worst(clip_of(turned), plain) < 1e-6);
+  CHECK(plain.rotations == untwisted(made).rotations);
+  CHECK(plain.rotations != turned.rotations);
+  const Motion again = untwisted(plain);
+  for (std::size_t i = 0; i < plain.rotations.size(); ++i)
+    REQUIRE(angle_between(again.rotations[i], plain.rotations[i]) < 1e-5);
 }
 
 TEST_CASE("joints of zero offset rotate their bones") {
