@@ -145,15 +145,29 @@ TEST_CASE("the RNN generator: any number of frames, the same alone, in a batch a
   std::filesystem::remove(path);
 }
 
-TEST_CASE("the RNN generator with final cut returns a part of the longer motion") {
+TEST_CASE("the RNN generator with final cut: a part of the longer motion; other lengths after a warm-up") {
   const Dvgan model = made({.generator = GeneratorKind::rnn, .hidden = 12, .final_cut = true});
   const std::size_t dof = model.format().dof(), frames = model.format().frames;
+  const RandomKey key{.seed = 2};
+  const Sentences text(context(), std::vector<std::vector<int>>(3, model.format().vocabulary.encode(caption)),
+                       model.format().vocabulary.size());
+  const NoGrad values_only;
+  const std::vector<float> whole =  // [3 frames, 3, dof]
+      model.rnn()(text, model.rnn().noise(context(), key, 3, 3 * frames)).value().to_host();
+  const auto check_part = [&](const std::vector<float>& motion, std::size_t sample, std::size_t from) {
+    for (std::size_t f = 0; f < motion.size() / dof; ++f)
+      CHECK(std::equal(motion.begin() + static_cast<long>(f * dof),
+                       motion.begin() + static_cast<long>((f + 1) * dof),
+                       whole.begin() + static_cast<long>(((from + f) * 3 + sample) * dof)));
+  };
   const Poses cut = model.generate_poses(caption, {.count = 3, .seed = 2}),
-              whole = model.generate_poses(caption, {.count = 3, .seed = 2, .frames = 2 * frames});
-  const std::vector<cl_int> at = model.rnn().cuts(context(), {.seed = 2}, 3).to_host();
+              longer = model.generate_poses(caption, {.count = 3, .seed = 2, .frames = 2 * frames});
+  const std::vector<cl_int> at = model.rnn().cuts(context(), key, 3).to_host();
   for (std::size_t i = 0; i < 3; ++i) {
     REQUIRE(cut[i].size() == frames * dof);
-    CHECK(std::equal(cut[i].begin(), cut[i].end(), whole[i].begin() + at[i] * static_cast<long>(dof)));
+    REQUIRE(longer[i].size() == 2 * frames * dof);
+    check_part(cut[i], i, static_cast<std::size_t>(at[i]));
+    check_part(longer[i], i, frames);
   }
   CHECK(made({.generator = GeneratorKind::rnn, .hidden = 8, .final_cut = true}).generate(caption)[0].frames ==
         frames);

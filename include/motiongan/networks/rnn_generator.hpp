@@ -46,6 +46,10 @@ class RnnGenerator {
   /// Frames generated: N, or 2N with final cut.
   std::size_t frames_made() const { return options_.final_cut ? 2 * options_.frames : options_.frames; }
 
+  /// Frames before the first one of a stream or of a long motion without a prior: N with final cut, whose
+  /// critic has hardly seen the first frames, else 0.
+  std::size_t warm_up() const { return options_.final_cut ? options_.frames : 0; }
+
   /// First of the N frames that the final cut keeps of 2N, per sample: uniform in 0..N, both included. Empty
   /// without final cut.
   Indices cuts(const Context& context, const RandomKey& key, std::size_t batch) const {

@@ -18,7 +18,7 @@ using StreamId = std::size_t;
 
 /// Holds the states of any number of motions on the device and advances them together. A motion does not
 /// depend on the others in the stream, bit for bit with gemm()'s native engine, and its frames are those that
-/// the generator makes in one call for the same noise.
+/// the generator makes in one call for the same noise, without a prior from frame RnnGenerator::warm_up() on.
 ///
 /// step() allocates nothing once the stream has made that number of frames for that number of motions. The
 /// weights are read at construction: make a new stream after a training step. They are kept in 16 bits if
@@ -39,8 +39,9 @@ class RnnStream {
   std::size_t dof() const { return dof_; }
 
   /// Adds motions, with or without a prior. `prior` is [prior_frames, n, dof], normalised, with n either the
-  /// number of motions or 1 (shared by all). The next step returns their first frame, or the frame that
-  /// follows the prior. Throws Error for a prior of another size or an empty sentence.
+  /// number of motions or 1 (shared by all). The next step returns their first frame (that after the warm-up,
+  /// which is made here), or the frame that follows the prior. Throws Error for a prior of another size or an
+  /// empty sentence.
   std::vector<StreamId> add(const std::vector<StreamStart>& starts, std::span<const float> prior = {},
                             std::size_t prior_frames = 0) {
     const NoGrad values_only;
@@ -54,21 +55,24 @@ class RnnStream {
     const Tensor h_txt = encode(sentences);
     std::vector<cl_int> keys;
     for (const StreamStart& start : starts) append_key(keys, start, 0);
-    const Tensor z(context_, {prior_frames + 1, count, k_});
+    const std::size_t passed = prior_frames > 0 ? prior_frames : generator_.warm_up();
+    const Tensor z(context_, {passed + 1, count, k_});
     fill_normal_each(z, RandomStream::noise, 0, Indices(context_, keys));
     reserve(before + count);
     detail::copy_runs(h_txt, 0, k_, h_txt_, before * k_, k_, count, k_);
-    if (prior_frames == 0)
-      begin(generator_.first_pose(Var::constant(h_txt), Var::constant(z)).value(), before, count);
+    const Var text = Var::constant(h_txt), noise = Var::constant(z);
+    const Tensor given = prior_frames > 0 ? repeated(prior, prior_frames, count)
+                                          : generator_.first_pose(text, slice(noise, 0, 0, 1)).value();
+    if (passed == 0)
+      begin(given, before, count);
     else
-      continue_from(repeated(prior, prior_frames, count), Var::constant(h_txt), Var::constant(z), before);
+      continue_from(given, text, noise, before);
     std::vector<StreamId> added;
     for (std::size_t i = 0; i < count; ++i) {
       added.push_back(next_id_);
       row_of_[next_id_] = before + i;
       ids_.push_back(next_id_++);
-      append_key(keys_, starts[i],
-                 static_cast<std::int64_t>(prior_frames) - static_cast<std::int64_t>(tick_));
+      append_key(keys_, starts[i], static_cast<std::int64_t>(passed) - static_cast<std::int64_t>(tick_));
     }
     changed();
     return added;
@@ -169,9 +173,10 @@ class RnnStream {
     detail::copy_runs(pose, 0, dof_, rows_, half_ * slab() + row * width(), width(), count, dof_);
   }
 
-  /// Sets `count` rows from `row` to the frame after `given` [n, count, dof]; z is [n + 1, count, k].
+  /// Sets `count` rows from `row` to frame n of what begins with `given` [1 to n, count, dof]; z is
+  /// [n + 1, count, k].
   void continue_from(const Tensor& given, const Var& h_txt, const Var& z, std::size_t row) {
-    const std::size_t n = given.dim(0), count = given.dim(1);
+    const std::size_t n = z.dim(0) - 1, count = given.dim(1);
     const Var plots = generator_.plot_gates(folded_, h_txt, slice(z, 0, 1, n));
     const detail::RolloutTrace trace = detail::rollout_forward(given, plots.value(), folded_.rollout, false);
     const detail::RolloutShape& from = trace.shape;
