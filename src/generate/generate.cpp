@@ -166,8 +166,7 @@ int generate(const GenerateArgs& args, const fs::path& file) {
   if (made != format.frames) model.rnn();  // throws Error if there is no RNN generator
   const double rate = args.rate > 0 ? args.rate : format.rate;
   const std::size_t frames = motion::resampled_frames(made, format.rate, rate);
-  // A window cut out of a longer motion (final cut) cannot be generated frame by frame.
-  const bool streamed = model.is_recurrent() && !(model.options().cuts() && made == format.frames);
+  const bool streamed = model.is_recurrent();
   for (const std::string& text : texts) check_words(format, text, args.strict);
   const fs::path out = args.out;
   make_folder(out);

@@ -111,8 +111,9 @@ class Dvgan {
   }
 
   /// Generates the normalised poses of `count` motions, [frames, dof] each. Words that are not in the
-  /// vocabulary are encoded as unknown. Final cut is applied only if `frames` is N. Throws Error if the
-  /// caption has no words, or if `frames` is not N and the model has a CNN generator.
+  /// vocabulary are encoded as unknown. An RNN generator with final cut begins with its frame N, see
+  /// RnnGenerator::warm_up(). Throws Error if the caption has no words, or if `frames` is not N and the model
+  /// has a CNN generator.
   std::vector<std::vector<float>> generate_poses(const std::string& caption,
                                                  const GenerateOptions& options) const {
     const NoGrad values_only;
@@ -130,7 +131,7 @@ class Dvgan {
               values.begin() + static_cast<std::ptrdiff_t>(row * dof), dof,
               all[first + row % batch].begin() + static_cast<std::ptrdiff_t>((from + row / batch) * dof));
       };
-      if (is_recurrent() && !(options_.cuts() && frames == format_.frames)) {
+      if (is_recurrent()) {
         RnnStream stream(rnn());
         std::vector<StreamStart> starts;
         for (std::size_t b = 0; b < batch; ++b)
