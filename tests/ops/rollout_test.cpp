@@ -51,14 +51,17 @@ TEST_CASE("rollout: derivatives with respect to every input, with and without gi
 }
 
 TEST_CASE("rollout: the fused form equals the composed one" * doctest::test_suite("double")) {
-  for (const auto& [given, leak] :
-       {std::pair<std::size_t, double>{1, 0}, {4, 0}, {9, 0}, {1, 0.1}, {4, 0.5}}) {
-    CAPTURE(given);
-    CAPTURE(leak);
+  struct Case {
+    std::size_t given;
+    double leak;
+  };
+  for (const Case& c : {Case{1, 0}, {4, 0}, {9, 0}, {1, 0.1}, {4, 0.5}}) {
+    CAPTURE(c.given);
+    CAPTURE(c.leak);
     std::vector<Var> x;
-    for (const Input& i : inputs(9, 3, 7, 20, given))
+    for (const Input& i : inputs(9, 3, 7, 20, c.given))
       x.push_back(Var::leaf(Tensor::from(double_context(), i.shape, i.values)));
-    const Var a = fused(leak)(x), b = composed(x, leak);
+    const Var a = fused(c.leak)(x), b = composed(x, c.leak);
     const Input u = randn(a.shape());
     const Var seed = Var::constant(Tensor::from(double_context(), u.shape, u.values));
     const std::vector<Var> ga = grad({a}, {seed}, x), gb = grad({b}, {seed}, x);

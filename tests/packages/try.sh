@@ -37,6 +37,7 @@ inside "cd /root/try
   motiongan devices
   motiongan models
   motiongan generate cmu-text --text walk --out shipped
+  motiongan generate cmu-stream --text walk --frames 200 --out shipped
   motiongan generate cmu-actions --class walk --seconds 3 --out shipped
   motiongan train dvgan --procedural 12 --generator rnn --hidden 16 --iterations 2 --batch 4 --save save
   motiongan generate save --text 'a person runs' --frames 50 --out made --html made.html
