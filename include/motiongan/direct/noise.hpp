@@ -45,7 +45,8 @@ class TurningVectors {
 class NoiseVariable {
  public:
   /// Draws it as Dvgan::generate does, for samples key.first_sample and following. With `given` frames
-  /// [n, B, dof], an RNN generator continues them, to `frames` in all.
+  /// [n, B, dof], an RNN generator continues them, to `frames` in all; without, it continues its warm-up, of
+  /// which the noise does not change.
   NoiseVariable(const Dvgan& model, Sentences text, const RandomKey& key, std::size_t frames, Var given = {})
       : model_(model), text_(std::move(text)), given_(std::move(given)) {
     const Context& context = model.context();
@@ -53,7 +54,13 @@ class NoiseVariable {
     const NoGrad values_only;
     std::vector<Var> levels;
     if (model.is_recurrent()) {
-      levels = {model.rnn().noise(context, key, batch, frames)};
+      const std::size_t warm_up = given_.empty() ? model.rnn().warm_up() : 0;
+      const Var z = model.rnn().noise(context, key, batch, warm_up + frames);
+      if (warm_up > 0) {
+        before_ = slice(z, 0, 0, warm_up);
+        given_ = model.rnn()(text_, before_);
+      }
+      levels = {slice(z, 0, warm_up, frames)};
     } else {
       require(frames == model.format().frames && given_.empty(), "a CNN generator makes its ",
               model.format().frames, " frames at once, not ", frames);
@@ -80,8 +87,11 @@ class NoiseVariable {
       levels.push_back(reshape(slice(z, 0, at, frames * text_.batch), {frames, text_.batch, k}));
       at += frames * text_.batch;
     }
-    return model_.is_recurrent() ? model_.rnn()(text_, levels.front(), {}, given_)
-                                 : model_.cnn()(text_, levels, cut_);
+    if (!model_.is_recurrent()) return model_.cnn()(text_, levels, cut_);
+    if (before_.empty()) return model_.rnn()(text_, levels.front(), {}, given_);
+    const std::size_t warm_up = before_.dim(0);
+    const Var whole = model_.rnn()(text_, concatenate({before_, levels.front()}, 0), {}, given_);
+    return slice(whole, 0, warm_up, whole.dim(0) - warm_up);
   }
 
   /// How far the noise has turned from where it was drawn, [1].
@@ -90,7 +100,7 @@ class NoiseVariable {
  private:
   const Dvgan& model_;
   Sentences text_;
-  Var given_;
+  Var given_, before_;  // what an RNN generator continues; the noise of its warm-up
   Indices cut_;
   std::vector<std::size_t> level_frames_;
   detail::TurningVectors noise_;
