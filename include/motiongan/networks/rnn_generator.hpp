@@ -21,7 +21,7 @@ struct RnnGeneratorOptions {
 /// and can continue given frames.
 class RnnGenerator {
  public:
-  /// Throws Error if a size is 0.
+  /// Throws Error if a size is 0 or the leak is not in [0, 1).
   RnnGenerator(Initializer init, const RnnGeneratorOptions& options) : options_(options) {
     require(options.vocabulary > 0 && options.dof > 0 && options.hidden > 0 && options.frames > 0,
             "RnnGenerator: vocabulary, dof, frames and hidden must be positive");
