@@ -11,14 +11,15 @@ namespace {
 struct AblateArgs {
   ActionDataArgs data;
   AblationTraining training;
+  std::size_t seeds = 1;
   std::string save;
   std::vector<std::string> variants;
   bool evaluate_only = false;
   EvaluationOptions evaluation;
 };
 
-/// The options stored in a variant's checkpoint, named as in `train attention`, so that generate and info
-/// read a variant's folder like that of any other run.
+/// The options stored in a run's checkpoint, named as in `train attention`, so that generate and info read
+/// its folder like that of any other run.
 FieldList kept_fields(ActionDataArgs& data, ActionGanOptions& model, AttentionTrainOptions& training) {
   FieldList list;
   data.list_fields(list);
@@ -27,32 +28,38 @@ FieldList kept_fields(ActionDataArgs& data, ActionGanOptions& model, AttentionTr
   return list;
 }
 
-RunNotes notes_of(AblateArgs args, const AblationVariant& variant) {
-  ActionGanOptions model = variant.model(args.training.model);
-  AttentionTrainOptions training = variant.training(args.training.training);
+RunNotes notes_of(AblateArgs args, const AblationVariant& variant, std::uint64_t seed) {
+  const AblationTraining seeded = with_seed(args.training, seed);
+  ActionGanOptions model = variant.model(seeded.model);
+  AttentionTrainOptions training = variant.training(seeded.training);
   return {{"options", note_of(kept_fields(args.data, model, training))}};
 }
 
-/// Takes data and options from the first variant of an existing comparison that stores them, except for the
-/// parts and weights that this variant changes.
+/// Takes data and options from the first run of an existing comparison that stores them, except for the parts
+/// and weights that its variant changes.
 void take_options_of(AblateArgs& args, const CLI::App& verb) {
-  for (const AblationVariant& variant : ablation_variants()) {
-    const fs::path checkpoint = RunFiles{fs::path(args.save) / variant.name}.checkpoint();
-    if (!fs::exists(checkpoint)) continue;
-    const std::string note = options_note(checkpoint);
-    if (note.empty()) continue;
-    const ActionGanOptions model = args.training.model;
-    const AttentionTrainOptions training = args.training.training;
-    take_note(kept_fields(args.data, args.training.model, args.training.training), verb, note, checkpoint,
-              options_of_action_clips);
-    args.training.model.generator = model.generator;
-    args.training.training.iterations = training.iterations;
-    if (!variant.attention) args.training.model.attention = model.attention;
-    if (!variant.skeleton_loss) args.training.training.skeleton_weight = training.skeleton_weight;
-    if (!variant.blend_loss) args.training.training.blend_weight = training.blend_weight;
-    if (variant.lstm) args.training.model.noise_dim = model.noise_dim;
-    return;
-  }
+  AttentionTrainOptions& training = args.training.training;
+  for (const AblationVariant& variant : ablation_variants())
+    for (const std::uint64_t seed : seeds_from(training.seed, args.seeds)) {
+      const fs::path folder = run_folder(args.save, variant, seed, training.seed);
+      const fs::path checkpoint = RunFiles{folder}.checkpoint();
+      if (!fs::exists(checkpoint)) continue;
+      const std::string note = options_note(checkpoint);
+      if (note.empty()) continue;
+      const ActionGanOptions model = args.training.model;
+      const AttentionTrainOptions asked = training;
+      take_note(kept_fields(args.data, args.training.model, training), verb, note, checkpoint,
+                options_of_action_clips);
+      args.training.model.generator = model.generator;
+      training.iterations = asked.iterations;
+      // The one seed of an earlier version is the first.
+      if (folder.filename() != fs::path(variant.name)) training.seed = asked.seed;
+      if (!variant.attention) args.training.model.attention = model.attention;
+      if (!variant.skeleton_loss) training.skeleton_weight = asked.skeleton_weight;
+      if (!variant.blend_loss) training.blend_weight = asked.blend_weight;
+      if (variant.lstm) args.training.model.noise_dim = model.noise_dim;
+      return;
+    }
 }
 
 int run_ablation(AblateArgs args, const CLI::App& verb) {
@@ -67,7 +74,7 @@ int run_ablation(AblateArgs args, const CLI::App& verb) {
   require(!args.data.folder.empty() || args.data.procedural > 0,
           "there is nothing to compare on: give a folder of clips and their labels, or --procedural");
   fill_in_choices(args.data);
-  args.training.model.seed = args.training.training.seed;
+  args.training.seeds = seeds_from(args.training.training.seed, args.seeds);
 
   const Context context;
   const motion::ActionDataset data = load_data(args.data);
@@ -80,11 +87,12 @@ int run_ablation(AblateArgs args, const CLI::App& verb) {
     print_saved_to(args.save, args.training.budget.save_every_minutes);
     const bool all = train_variants(
         context, data, args.save, variants, args.training,
-        [&](const AblationVariant& variant) { return notes_of(args, variant); }, runs);
+        [&](const AblationVariant& variant, std::uint64_t seed) { return notes_of(args, variant, seed); },
+        runs);
     if (!runs.all_ended(all)) return 128 + caught_signal();
   }
   if (!runs.is_first()) return 0;
-  report_variants(context, data, args.save, variants,
+  report_variants(context, data, args.save, variants, args.training.seeds,
                   {args.evaluation, args.data.options.clips.unit_metres / args.data.options.clips.scale,
                    args.evaluate_only && !args.variants.empty()});
   return 0;
@@ -94,8 +102,9 @@ void add_training_options(CLI::App& verb, AblationTraining& a) {
   const char* group = "Training, the same for all";
   add_budget_options(verb, a.budget, "for each variant", group);
   add_options(verb, fields_of(a.model), group, {.only = {"hidden", "continues", "exact_bones"}});
-  add_options(verb, fields_of(a.training), group,
-              {.without = {"iterations", "weight_clip", "skeleton_vectors", "critic_classes", "balanced"}});
+  add_options(
+      verb, fields_of(a.training), group,
+      {.without = {"iterations", "seed", "weight_clip", "skeleton_vectors", "critic_classes", "balanced"}});
   // A loss that a variant leaves out must be on in the others.
   for (const char* name : {"--skeleton-weight", "--blend-weight"}) verb.get_option(name)->check(positive());
 }
@@ -107,10 +116,9 @@ const Verb ablate_attention_verb{
           "attention",
           "Train the attention WGAN-GP, its variants without attention, blend loss or skeleton loss, and "
           "the\n"
-          "LSTM baseline, all with the same budget, and measure them on test clips: table.csv, angles.csv,\n"
-          "angles.png and strips of poses in --save. Every variant has its own folder there. Ctrl-C saves "
-          "and\n"
-          "stops; the same command continues, and trains nothing twice.");
+          "LSTM baseline, all with the same budget, and measure them on test clips: table.csv, runs.csv,\n"
+          "angles.csv, angles.png and strips of poses in --save. Every run has its own folder there,\n"
+          "VARIANT/seed-N. Ctrl-C saves and stops; the same command continues, and trains nothing twice.");
       const auto args = std::make_shared<AblateArgs>();
       AblateArgs& a = *args;
       a.training.budget.minutes = 20;
@@ -121,6 +129,7 @@ const Verb ablate_attention_verb{
       verb->add_option("--variants", a.variants, "variants to train and measure [all]: " + names)
           ->delimiter(',')
           ->type_name("A,B");
+      add_seed_options(*verb, a.seeds, a.training.training.seed);
       verb->add_flag("--evaluate-only", a.evaluate_only, "train nothing; measure the existing models");
       add_dry_run(*verb, a.training.dry_run);
       add_training_options(*verb, a.training);

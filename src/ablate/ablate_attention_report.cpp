@@ -136,40 +136,49 @@ void print_windows(const ActionEvaluation& evaluation) {
   if (!none.empty()) fmt::print("no test clip of {} is that long: not measured\n", none);
 }
 
+/// Three significant digits, with the spread over seeds if there are several.
+std::string text_of(const MeanStd& m, double factor = 1) {
+  return cell(m, [&](double v) { return fmt::format("{:.3g}", factor * v); });
+}
+
 void print_tables(const ActionEvaluation& evaluation, std::span<const AblationResult> results, bool metres) {
-  const auto number = [](double v) { return fmt::format("{:.3g}", v); };
-  const auto short_length = [&](double v) { return number(metres ? 1000 * v : v); };
+  using M = ActionMeasures;
+  const double millimetres = metres ? 1000 : 1;
   std::vector<std::vector<std::string>> angles, motions;
   const auto add = [&](const AblationResult& r, std::string_view paper) {
-    const ActionMeasures& m = r.measures;
-    if (r.name != "truth")
-      angles.push_back({r.name, r.iterations > 0 ? std::to_string(r.iterations) : "", number(m.curve_error),
-                        number(m.curve_error_first), number(m.curve_error_last),
-                        fmt::format("{} +- {}", number(m.window_error), number(m.window_error_deviation)),
+    if (r.name != "truth") {
+      const std::size_t iterations = r.runs.front().iterations;
+      angles.push_back({r.name, iterations > 0 ? std::to_string(iterations) : "",
+                        text_of(r.over_seeds(&M::curve_error)), text_of(r.over_seeds(&M::curve_error_first)),
+                        text_of(r.over_seeds(&M::curve_error_last)), text_of(r.over_seeds(&M::window_error)),
+                        fmt::format("{:.3g}", r.over_seeds(&M::window_error_deviation).mean),
                         std::string(paper)});
+    }
     std::vector<std::string> row{r.name,
-                                 number(m.bone_error),
-                                 short_length(m.seam),
-                                 short_length(m.seam_body),
-                                 short_length(m.step),
-                                 number(m.speed)};
-    if (const auto& l = r.long_run)
-      row.insert(row.end(), {number(l->bone_error), short_length(l->step), number(l->speed),
-                             number(l->distance), fmt::format("{:.0f}%", 100 * l->broken)});
+                                 text_of(r.over_seeds(&M::bone_error)),
+                                 text_of(r.over_seeds(&M::seam), millimetres),
+                                 text_of(r.over_seeds(&M::seam_body), millimetres),
+                                 text_of(r.over_seeds(&M::step), millimetres),
+                                 text_of(r.over_seeds(&M::speed))};
+    if (r.over_long_runs(&M::step).count > 0)
+      row.insert(row.end(),
+                 {text_of(r.over_long_runs(&M::bone_error)), text_of(r.over_long_runs(&M::step), millimetres),
+                  text_of(r.over_long_runs(&M::speed)), text_of(r.over_long_runs(&M::distance)),
+                  fmt::format("{:.0f}%", 100 * r.over_long_runs(&M::broken).mean)});
     else
       row.insert(row.end(), 5, "");
     motions.push_back(row);
   };
-  add({"truth", evaluation.truth()}, "");
+  add({"truth", {{.measures = evaluation.truth()}}}, "");
   for (const AblationResult& r : results)
     add(r, r.name == "still" ? "(not in the paper: the last pose, held)" : ablation_variant(r.name).paper);
   fmt::print(
       "\nangle between adjacent bones over the {} frames after the prior, in degrees: error of the mean\n"
-      "curve (all frames, first second, last second), and of each window against its own ground truth\n"
-      "(+- between windows)\n",
+      "curve (all frames, first second, last second), and of each window against its own ground truth,\n"
+      "with its standard deviation between windows\n",
       evaluation.truth().angles.size());
-  print_table({"", "iterations", "curve", "first s", "last s", "window", "the paper says"}, angles, "lrrrrrl",
-              "  ");
+  print_table({"", "iterations", "curve", "first s", "last s", "window", "deviation", "the paper says"},
+              angles, "lrrrrrrl", "  ");
   const std::string small = metres ? " mm" : "", large = metres ? " m" : "";
   fmt::print(
       "\nmotion{}: error of the bone lengths against the prior; mean step of the joints between seconds\n"
@@ -183,15 +192,15 @@ void print_tables(const ActionEvaluation& evaluation, std::span<const AblationRe
 }
 
 /// Iterations that a run's model was trained for; 0 if there is no checkpoint.
-std::size_t iterations_of(const fs::path& folder) {
-  const fs::path checkpoint = RunFiles{folder}.checkpoint();
-  return fs::exists(checkpoint) ? read_run_record(checkpoint).iteration : 0;
+std::size_t iterations_of(const RunFiles& files) {
+  return fs::exists(files.checkpoint()) ? read_run_record(files.checkpoint()).iteration : 0;
 }
 
 }  // namespace
 
 void report_variants(const Context& context, const motion::ActionDataset& data, const fs::path& save,
-                     const std::vector<const AblationVariant*>& variants, const AblationReport& options) {
+                     const std::vector<const AblationVariant*>& variants,
+                     const std::vector<std::uint64_t>& seeds, const AblationReport& options) {
   const bool metres = options.unit_metres > 0;
   EvaluationOptions wanted = options.evaluation;
   wanted.unit_metres = metres ? options.unit_metres : 1;
@@ -202,25 +211,33 @@ void report_variants(const Context& context, const motion::ActionDataset& data, 
   std::vector<AblationResult> results;
   std::string missing;
   print_windows(evaluation);
-  const auto measure = [&](std::string_view name, std::string_view title, const FutureMaker& maker) {
+  const auto measure = [&](const FutureMaker& maker, std::string_view title) {
     const auto all = evaluation.positions(maker, long_frames);
-    results.push_back({std::string(name), evaluation.measure(maker), evaluation.measure_alone(all), 0});
     if (!title.empty()) strips.add(title, all);
+    return AblationRun{.measures = evaluation.measure(maker), .long_run = evaluation.measure_alone(all)};
   };
   for (const AblationVariant* variant : variants) {
-    const fs::path file = RunFiles{save / variant->name}.generator();
-    if (!fs::exists(file)) {
-      require(!options.all_must_be_there, "there is no model of the variant ", variant->name, " (no ",
-              file.string(), ")");
-      missing += (missing.empty() ? "" : ", ") + std::string(variant->name);
+    AblationResult result{std::string(variant->name), {}};
+    for (const std::uint64_t seed : seeds) {
+      const RunFiles files{run_folder(save, *variant, seed, seeds.front())};
+      if (!fs::exists(files.generator())) continue;
+      const ActionGan model = ActionGan::load(context, files.generator());
+      require(
+          io::to_json(model.format()).dump() == own_format, files.generator().string(),
+          ": this model was trained on other data (other clips, labels, split or pose), and may know these "
+          "test clips; give the original folder and options");
+      result.runs.push_back(
+          measure(future_maker(model), result.runs.empty() ? variant->title : std::string_view{}));
+      result.runs.back().seed = seed;
+      result.runs.back().iterations = iterations_of(files);
+    }
+    if (!result.runs.empty()) {
+      results.push_back(std::move(result));
       continue;
     }
-    const ActionGan model = ActionGan::load(context, file);
-    require(io::to_json(model.format()).dump() == own_format, file.string(),
-            ": this model was trained on other data (other clips, labels, split or pose), and may know these "
-            "test clips; give the original folder and options");
-    measure(variant->name, variant->title, future_maker(model));
-    results.back().iterations = iterations_of(save / variant->name);
+    require(!options.all_must_be_there, "there is no model of the variant ", variant->name, " (no ",
+            RunFiles{run_folder(save, *variant, seeds.front(), seeds.front())}.generator().string(), ")");
+    missing += (missing.empty() ? "" : ", ") + std::string(variant->name);
   }
   require(!results.empty(), "there is no model in ", save.string(),
           ": none of the variants has been trained");
@@ -229,25 +246,26 @@ void report_variants(const Context& context, const motion::ActionDataset& data, 
   make_folder(save);
   const std::vector<AblationClaim> claims = judge_claims(results, metres);
   write_angles(save / "angles.csv", evaluation, results);
+  write_runs(save / "runs.csv", results, metres);
   std::vector<view::Series> curves;
   const auto add_curve = [&](std::string name, const std::vector<double>& angles) {
     curves.push_back({std::move(name), {}, angles});
     for (std::size_t f = 0; f < angles.size(); ++f) curves.back().x.push_back(static_cast<double>(f + 1));
   };
   add_curve("truth", evaluation.truth().angles);
-  for (const AblationResult& r : results)
-    add_curve(std::string(ablation_variant(r.name).title), r.measures.angles);
+  for (const AblationResult& r : results) add_curve(std::string(ablation_variant(r.name).title), r.angles());
   write_png(save / "angles.png",
             view::line_plot(curves, {.title = "mean angle between adjacent bones (degrees)",
                                      .x_label = "frame after the prior",
                                      .width = 1480,
                                      .height = 620}));
-  measure("still", "", stand_still(data.format));
+  results.push_back({"still", {measure(stand_still(data.format), "")}});
   write_table(save / "table.csv", evaluation, results, metres);
 
   print_tables(evaluation, results, metres);
   if (!claims.empty())
-    fmt::print("\ndoes it agree with what the paper says? (one run each, one seed; even: within 10%)\n");
+    fmt::print("\ndoes it agree with what the paper says? ({} each; even: within 10%{})\n",
+               counted(seeds.size(), "seed"), seeds.size() > 1 ? " or two standard errors" : "");
   for (const AblationClaim& claim : claims)
     fmt::print("  {:<4} {} ({})\n",
                claim.verdict == Verdict::yes  ? "yes"
@@ -256,7 +274,7 @@ void report_variants(const Context& context, const motion::ActionDataset& data, 
                claim.claim, claim.evidence);
   strips.write(save / "strip_10s.png", 10);
   strips.write(save / "strip_30s.png", long_seconds);
-  fmt::print("\nwrote table.csv, angles.csv, angles.png, strip_10s.png and strip_30s.png in {}\n",
+  fmt::print("\nwrote table.csv, runs.csv, angles.csv, angles.png, strip_10s.png and strip_30s.png in {}\n",
              shown(save));
 }
 

@@ -55,7 +55,7 @@ void take_options_of(AblateDvganArgs& args, const CLI::App& verb, const std::vec
                      const std::vector<std::uint64_t>& seeds) {
   for (const DvganVariant& variant : variants)
     for (const std::uint64_t seed : seeds) {
-      const fs::path checkpoint = RunFiles{folder_of(args.save, variant, seed)}.checkpoint();
+      const fs::path checkpoint = RunFiles{folder_of(args.save, variant.name(), seed)}.checkpoint();
       if (!fs::exists(checkpoint)) continue;
       const std::string note = options_note(checkpoint);
       if (note.empty()) continue;
@@ -98,7 +98,7 @@ bool train_variants(const Context& context, const motion::Dataset& data, const A
   for (const std::uint64_t seed : seeds)
     for (const DvganVariant& variant : variants) {
       if (!runs.takes_next()) continue;
-      const fs::path folder = folder_of(all.save, variant, seed);
+      const fs::path folder = folder_of(all.save, variant.name(), seed);
       const std::string name = variant.name() + " " + folder.filename().string();
       if (has_had(folder, all.budget)) {
         fmt::print("{}: already trained\n", name);
@@ -150,8 +150,7 @@ int run_ablation(AblateDvganArgs args, const CLI::App& verb) {
   require_one_source(verb);
   settle_budget(verb, args.budget);
   const std::vector<DvganVariant> variants = asked_variants(args.variants);
-  std::vector<std::uint64_t> seeds;
-  for (std::size_t i = 0; i < args.seeds; ++i) seeds.push_back(args.training.seed + i);
+  const std::vector<std::uint64_t> seeds = seeds_from(args.training.seed, args.seeds);
   if (args.folder.empty() && args.procedural == 0) take_options_of(args, verb, variants, seeds);
   require(!args.folder.empty() || args.procedural > 0,
           "there is nothing to compare on: give a folder of BVH clips, or --procedural");
@@ -205,10 +204,7 @@ const Verb ablate_dvgan_verb{
           ->delimiter(',')
           ->capture_default_str()
           ->type_name("A,B");
-      verb->add_option("--seeds", a.seeds, "number of seeds for each variant")
-          ->check(positive())
-          ->capture_default_str();
-      verb->add_option("--seed", a.training.seed, "first seed")->check(not_negative())->capture_default_str();
+      add_seed_options(*verb, a.seeds, a.training.seed);
       verb->add_flag("--evaluate-only", a.evaluate_only, "train nothing; measure the existing models");
       add_dry_run(*verb, a.dry_run);
       add_budget_options(*verb, a.budget, "for each run", "Training");

@@ -1,14 +1,9 @@
 // Shared by the parts of `motiongan ablate dvgan`.
 #pragma once
+#include "ablate/seeds.hpp"
 #include "motiongan/experiments/dvgan_ablation.hpp"
-#include "shared/command.hpp"
 
 namespace motiongan::command {
-
-/// Folder of a variant's run with a seed.
-inline fs::path folder_of(const fs::path& save, const DvganVariant& variant, std::uint64_t seed) {
-  return save / variant.name() / concat("seed-", seed);
-}
 
 /// Measures the models in `save`, prints the table and writes there runs.csv (one line per run), table.csv
 /// (means and standard deviations over seeds) and table.md (the same next to the paper's rows).

@@ -16,19 +16,21 @@ Row paper_cells(const paper::GeneratorRow* row) {
   return out;
 }
 
-std::string cell(const MeanStd& m, int decimals) {
-  if (m.count == 0) return "-";
-  if (m.count == 1) return fmt::format("{:.{}f}", m.mean, decimals);
-  return fmt::format("{:.{}f} ± {:.{}f}", m.mean, decimals, m.spread, decimals);
+/// "-" if it is not finite.
+std::string number(double value, int decimals) {
+  return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";
+}
+
+/// A column's value of one model.
+double value_of(const AblationColumn& column, const ModelEvaluation& model) {
+  return column.measure(model.measures, model.distance.distance);
 }
 
 Row cells(const DvganAblationRow& row) {
   Row out{row.variant.name(), std::to_string(row.runs.size())};
   for (const AblationColumn& column : ablation_columns())
-    out.push_back(cell(row.over_seeds([&](const ModelEvaluation& e) {
-      return column.measure(e.measures, e.distance.distance);
-    }),
-                       column.decimals));
+    out.push_back(cell(row.over_seeds([&](const ModelEvaluation& e) { return value_of(column, e); }),
+                       [&](double value) { return number(value, column.decimals); }));
   return out;
 }
 
@@ -43,12 +45,8 @@ Row head() {
 Row real_cells(const RealEvaluation& real) {
   Row out{"real", "-"};
   for (const AblationColumn& column : ablation_columns())
-    out.push_back(
-        column.name == "FID" && !real.training
-            ? "-"
-            : fmt::format("{:.{}f}",
-                          column.measure(real.measures, real.training ? real.training->distance : 0),
-                          column.decimals));
+    out.push_back(number(column.measure(real.measures, real.training ? real.training->distance : NAN),
+                         column.decimals));
   return out;
 }
 
@@ -68,8 +66,7 @@ void print_difference(const std::vector<DvganAblationRow>& rows, std::string_vie
   if (from == nullptr || to == nullptr) return;
   const auto difference = [&](std::size_t column) {
     const AblationColumn& c = ablation_columns()[column];
-    return paired_difference(
-        *from, *to, [&](const ModelEvaluation& e) { return c.measure(e.measures, e.distance.distance); });
+    return paired_difference(*from, *to, [&](const ModelEvaluation& e) { return value_of(c, e); });
   };
   const MeanStd recall = difference(1), score = difference(0);
   if (recall.count == 0) return;
@@ -100,14 +97,12 @@ void write_files(const fs::path& save, const std::vector<DvganAblationRow>& rows
     for (const DvganRun& run : row.runs) {
       runs += fmt::format("{},{},{}", fields(row.variant), run.seed, run.iterations);
       for (const AblationColumn& column : ablation_columns())
-        runs +=
-            fmt::format(",{:.6g}", column.measure(run.evaluation.measures, run.evaluation.distance.distance));
+        runs += fmt::format(",{:.6g}", value_of(column, run.evaluation));
       runs += "\n";
     }
     table += fmt::format("{},{}", fields(row.variant), row.runs.size());
     for (const AblationColumn& column : ablation_columns()) {
-      const MeanStd m = row.over_seeds(
-          [&](const ModelEvaluation& e) { return column.measure(e.measures, e.distance.distance); });
+      const MeanStd m = row.over_seeds([&](const ModelEvaluation& e) { return value_of(column, e); });
       table += fmt::format(",{:.6g},{:.6g}", m.mean, m.spread);
     }
     table += paper_fields(row.variant.find(paper::table2_cmu));
@@ -122,10 +117,11 @@ void write_files(const fs::path& save, const std::vector<DvganAblationRow>& rows
       "# Tables 2 and S1 on these clips\n\nMean ± standard deviation over seeds. K = {} descriptions of {} "
       "test "
       "clips, {} motions of each variant. IS in nats (its exponential is what most papers print), R@k in "
-      "percent, FID, diversity and multimodality in the ranker's embedding of unit length. The real row's "
-      "FID is that of windows of training clips. The paper's columns, on the right, are for other clips, "
+      "percent, FID, diversity and multimodality in the ranker's embedding of unit length, jerk in {}/s^3, "
+      "feet as in `motiongan evaluate motion`. The real row's FID is that of windows of training clips. The "
+      "paper's columns, on the right, are for other clips, "
       "another K and another ranker: only the order of the rows can be compared.\n\n",
-      k, real.clips, real.measures.motions);
+      k, real.clips, real.measures.motions, real.measures.quality.length_unit);
   Row titles = head();
   for (const char* corpus : {"CMU", "H3.6M"})
     for (const char* column : {"IS", "R@1", "R@3", "R@5", "R@10"})
@@ -165,7 +161,7 @@ void report_dvgan_variants(const Context& context, const motion::Dataset& data, 
   for (const DvganVariant& variant : variants) {
     DvganAblationRow& row = rows.emplace_back(DvganAblationRow{variant, {}});
     for (const std::uint64_t seed : seeds) {
-      const RunFiles files{folder_of(save, variant, seed)};
+      const RunFiles files{folder_of(save, variant.name(), seed)};
       if (!fs::exists(files.generator())) continue;
       const Dvgan model = Dvgan::load(context, files.generator());
       ModelEvaluationOptions asked = options;

@@ -31,8 +31,8 @@ const motion::ActionDataset& small_data() {
   return data;
 }
 
-AblationResult result(const char* name, double curve, double bones, double seam) {
-  AblationResult out{name, {}, {}, 7};
+AblationRun run(std::uint64_t seed, double curve, double bones, double seam) {
+  AblationRun out{.seed = seed, .iterations = 7};
   out.measures.angles = {40, 41, 39};
   out.measures.curve_error = curve;
   out.measures.curve_error_first = 1;
@@ -42,6 +42,10 @@ AblationResult result(const char* name, double curve, double bones, double seam)
   out.measures.seam = 0.012;
   out.measures.speed = 1.5;
   return out;
+}
+
+AblationResult result(const char* name, double curve, double bones, double seam) {
+  return {name, {run(1, curve, bones, seam)}};
 }
 
 std::string text_of(const std::filesystem::path& path) { return motion::read_text(path, "table"); }
@@ -81,8 +85,9 @@ TEST_CASE("tables: ground truth first, lengths in millimetres if the unit is kno
   const std::filesystem::path path =
       std::filesystem::temp_directory_path() / ("motiongan-ablation-" + std::to_string(getpid()) + ".csv");
   std::vector<AblationResult> results{result("full", 0.5, 3, 0.01), result("lstm", 2, 4, 0.02)};
-  results[1].long_run = results[1].measures;
-  results[1].long_run->broken = 0.25;
+  AblationRun& lstm = results[1].runs.front();
+  lstm.long_run = lstm.measures;
+  lstm.long_run->broken = 0.25;
 
   write_angles(path, evaluation, results);
   const std::string angles = text_of(path);
@@ -95,8 +100,20 @@ TEST_CASE("tables: ground truth first, lengths in millimetres if the unit is kno
   CHECK(table.starts_with("variant,iterations,curve_error_deg,"));
   CHECK(table.find(",seam_mm,") != std::string::npos);
   CHECK(table.find("\ntruth,,0,0,0,0,0,") != std::string::npos);
-  CHECK(table.find("\nfull,7,0.5,1,2,0,0,3,12,10,0,0,1.5,0,,,,,,\n") != std::string::npos);
-  CHECK(table.find("\nlstm,7,2,1,2,0,0,4,12,20,0,0,1.5,0,4,12,0,1.5,0,0.25\n") != std::string::npos);
+  CHECK(table.find("\nfull,7,0.5,1,2,0,0,3,12,10,0,0,1.5,0,,,,,,,1\n") != std::string::npos);
+  CHECK(table.find("\nlstm,7,2,1,2,0,0,4,12,20,0,0,1.5,0,4,12,0,1.5,0,0.25,1\n") != std::string::npos);
+  // Two seeds: means in the table, each of them in the other file.
+  results[0].runs.push_back(run(2, 1.5, 5, 0.03));
+  results[0].runs[1].measures.angles = {42, 41, 39};
+  write_table(path, evaluation, results, true);
+  CHECK(text_of(path).find("\nfull,7,1,1,2,0,0,4,12,20,0,0,1.5,0,,,,,,,2\n") != std::string::npos);
+  write_runs(path, results, true);
+  CHECK(text_of(path).find("variant,seed,iterations,curve_error_deg,") == 0);
+  CHECK(text_of(path).find("\nfull,1,7,0.5,1,2,0,0,3,12,10,0,0,1.5,0,,,,,,\n"
+                           "full,2,7,1.5,1,2,0,0,5,12,30,0,0,1.5,0,,,,,,\nlstm,1,7,2,") != std::string::npos);
+  write_angles(path, evaluation, results);
+  CHECK(text_of(path).find(",41,40\n2,0.25,") != std::string::npos);
+  results[0].runs.pop_back();
   write_table(path, evaluation, results, false);
   CHECK(text_of(path).find("\nfull,7,0.5,1,2,0,0,3,0.012,0.01,") != std::string::npos);
   std::filesystem::remove(path);
@@ -120,6 +137,19 @@ TEST_CASE("only claims about the given variants are judged") {
   for (const AblationClaim& c : claims)
     if (c.claim.starts_with("blend loss: smaller")) CHECK(c.evidence == "full 10, no_blend 30 mm");
   CHECK(judge_claims({}, true).empty());
+}
+
+TEST_CASE("with several seeds a claim needs two standard errors") {
+  // Means 1 and 3, standard error sqrt(0.02 / 2 + 8 / 2) = 2.0: one apart; then sqrt(0.02 / 2 + 0.02 / 2).
+  std::vector<AblationResult> results{{"full", {run(1, 0.9, 0, 0), run(2, 1.1, 0, 0)}},
+                                      {"no_attention", {run(1, 1, 0, 0), run(2, 5, 0, 0)}}};
+  AblationClaim claim = judge_claims(results, true).front();
+  CHECK(claim.verdict == Verdict::even);
+  CHECK(claim.evidence == "full 1 ± 0.141, no_attention 3 ± 2.83 degrees, 0.999 standard errors apart");
+  results[1].runs = {run(1, 2.9, 0, 0), run(2, 3.1, 0, 0)};
+  claim = judge_claims(results, true).front();
+  CHECK(claim.verdict == Verdict::yes);
+  CHECK(says(claim.evidence, "14.1 standard errors apart"));
 }
 
 }  // namespace action_ablation_test

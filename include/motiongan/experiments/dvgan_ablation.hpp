@@ -1,6 +1,7 @@
 // The ablation study of Lin & Amer (Tables 2 and S1): generators, critics, validation, input shift and final
 // cut in every combination.
 #pragma once
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -127,7 +128,7 @@ struct AblationColumn {
   int decimals = 1;  ///< digits after the point
   double (*measure)(const MotionSetMeasures& set, double distance);
 };
-/// All columns, in the order of the table.
+/// All columns, in the order of the table. Those of feet are NaN for a skeleton that has none.
 inline std::span<const AblationColumn> ablation_columns() {
   using Set = const MotionSetMeasures&;
   static constexpr AblationColumn all[] = {
@@ -138,7 +139,11 @@ inline std::span<const AblationColumn> ablation_columns() {
       {"R@10", 1, [](Set s, double) { return s.retrieval.recall[3]; }},
       {"FID", 3, [](Set, double d) { return d; }},
       {"diversity", 3, [](Set s, double) { return s.diversity; }},
-      {"multimodality", 3, [](Set s, double) { return s.multimodality; }}};
+      {"multimodality", 3, [](Set s, double) { return s.multimodality; }},
+      {"jerk", 1, [](Set s, double) { return s.quality.jerk; }},
+      {"foot skate %", 1, [](Set s, double) { return s.quality.feet ? 100 * s.quality.feet->ratio() : NAN; }},
+      {"near floor %", 1,
+       [](Set s, double) { return s.quality.feet ? 100 * s.quality.feet->contact_share() : NAN; }}};
   return all;
 }
 
