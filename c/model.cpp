@@ -5,6 +5,7 @@
 #include "handles.hpp"
 #include "motiongan/core/context.hpp"
 #include "motiongan/io/safetensors.hpp"
+#include "motiongan/models/shipped_models.hpp"
 #include "motiongan/train/run_folder.hpp"
 
 namespace motiongan::c {
@@ -119,6 +120,24 @@ const char* motiongan_last_error(void) { return last_error().get(); }
 
 motiongan_status motiongan_close(std::uint64_t handle) {
   return call([&] { Registry::instance().take(handle); });
+}
+
+motiongan_status motiongan_shipped_count(std::size_t* count) {
+  return call([&] {
+    require_given(count, "count");
+    *count = shipped_models().size();
+  });
+}
+
+motiongan_status motiongan_shipped_name(std::size_t index, const char** name) {
+  return call([&] {
+    require_given(name, "name");
+    const std::vector<ShippedModel> models = shipped_models();
+    check_index(index, models.size(), "index");
+    thread_local std::string kept;
+    kept = models[index].name;
+    *name = kept.c_str();
+  });
 }
 
 motiongan_status motiongan_model_open(const char* path, const char* device, motiongan_model* model) {

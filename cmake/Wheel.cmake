@@ -1,4 +1,4 @@
-# Packs the Python module of packaging/python with LIBRARY, COPYRIGHT and SBOM as a wheel of VERSION into OUT.
+# Packs the Python module of packaging/python with LIBRARY, the shipped models, COPYRIGHT and SBOM as a wheel of VERSION into OUT.
 # Works in the folder STAGE; STRIP, where given, strips the library. Says "skipped" where the Python tools are missing.
 cmake_minimum_required(VERSION 3.22)
 include("${CMAKE_CURRENT_LIST_DIR}/PythonWith.cmake")
@@ -10,6 +10,7 @@ set(source "${CMAKE_CURRENT_LIST_DIR}/../packaging/python")
 file(REMOVE_RECURSE "${STAGE}")
 file(GLOB module "${source}/motiongan/*.py")
 file(COPY ${module} "${SBOM}" DESTINATION "${STAGE}/motiongan")
+file(COPY "${source}/../../models" DESTINATION "${STAGE}/motiongan")
 file(COPY "${COPYRIGHT}" DESTINATION "${STAGE}")
 configure_file("${LIBRARY}" "${STAGE}/motiongan/libmotiongan.so" COPYONLY)   # the file, where LIBRARY is a link
 if(STRIP)

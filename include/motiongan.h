@@ -74,7 +74,8 @@ typedef int32_t motiongan_kind;
 enum {
   MOTIONGAN_TEXT_WINDOW = 1, /**< text, CNN generator: clips of one length, no streams, no priors */
   MOTIONGAN_TEXT_STREAM = 2, /**< text, RNN generator: clips of any length, streams, priors */
-  MOTIONGAN_CLASSES = 3      /**< classes: clips of any length and streams, which continue a prior */
+  MOTIONGAN_CLASSES = 3      /**< classes: clips of any length and streams, which continue a prior, by default
+                                one of the model's own, which shipped models keep */
 };
 
 /** What can be read of each joint in each frame. */
@@ -102,9 +103,17 @@ MOTIONGAN_API motiongan_status motiongan_close(uint64_t handle);
 
 /* ---- models */
 
-/** Opens a model file, the generator in the folder of a training run, or a shipped model by its name ("cmu-text").
- * `device` selects the OpenCL device: "cpu", "gpu", a part of its name, "NAME:index"; NULL or "": that of
- * MOTIONGAN_DEVICE, else the best one. */
+/** How many trained models are installed: those that come with motiongan, and those in the folders of
+ * MOTIONGAN_MODELS. */
+MOTIONGAN_API motiongan_status motiongan_shipped_count(size_t* count);
+
+/** The name of one of them, from 0, in alphabetical order, for motiongan_model_open(). Valid until the next
+ * call of the thread. */
+MOTIONGAN_API motiongan_status motiongan_shipped_name(size_t index, const char** name);
+
+/** Opens a model file, the generator in the folder of a training run, or a shipped model by its name
+ * ("cmu-text"). `device` selects the OpenCL device: "cpu", "gpu", a part of its name, "NAME:index"; NULL or
+ * "": that of MOTIONGAN_DEVICE, else the best one. */
 MOTIONGAN_API motiongan_status motiongan_model_open(const char* path, const char* device,
                                                     motiongan_model* model);
 
@@ -146,8 +155,8 @@ MOTIONGAN_API motiongan_status motiongan_joint_offsets(uint64_t model_or_clip, f
 
 /** Makes a clip of `frames` frames; 0: motiongan_model_frames(), the only length of a MOTIONGAN_TEXT_WINDOW.
  * `prompt` is a text, or the name of a class. The same seed and sample give the same clip on the same device.
- * The clip continues the last frame of `prior`, which a model of classes needs and others (0: none) do not;
- * the prior itself is not in it. */
+ * The clip continues the last frame of `prior`; the prior itself is not in it. 0: none, or for a model of
+ * classes the second of its own that `sample` selects; fails if it keeps none. */
 MOTIONGAN_API motiongan_status motiongan_clip_make(motiongan_model model, const char* prompt, size_t frames,
                                                    uint64_t seed, uint32_t sample, motiongan_clip prior,
                                                    motiongan_clip* clip);
@@ -184,8 +193,8 @@ MOTIONGAN_API motiongan_status motiongan_clip_write(motiongan_clip clip, const c
 typedef struct motiongan_start {
   const char* prompt;   /**< a text, or the name of a class */
   uint64_t seed;        /**< of the noise */
-  motiongan_clip prior; /**< motion that it continues from the last frame on, in its place; a model of classes
-                           needs it. 0: none */
+  motiongan_clip prior; /**< motion that it continues from the last frame on, in its place. 0: none; for a
+                           model of classes, one of its own */
   double x;             /**< where it starts instead, if `placed` */
   double z;             /**< the same */
   double yaw;           /**< and its direction, in radians about y */

@@ -4,7 +4,6 @@
 #include <functional>
 #include <iterator>
 
-#include "generate/action_priors.hpp"
 #include "motiongan/formats/bvh.hpp"
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/models/shipped_models.hpp"
@@ -35,15 +34,15 @@ ShownModel shown_text_model(Dvgan model) {
           }};
 }
 
-ShownModel shown_class_model(ActionGan model, const fs::path& file) {
+ShownModel shown_class_model(ActionGan model) {
   std::vector<std::string> classes = model.format().classes;
-  return {std::move(classes), [file, model = std::move(model)](std::size_t subject, std::uint32_t sample) {
-            const GivenPrior start = kept_priors(file, model.format(), subject, 0, 1).at(0);
+  return {std::move(classes), [model = std::move(model)](std::size_t subject, std::uint32_t sample) {
+            const ActionStart& start = *model.start(subject, 0);
             const ActionSchedule schedule =
                 parse_action_schedule(model.format().classes[subject], model.format(), class_seconds);
             const auto clips = model.generate(std::vector{start.prior}, schedule,
                                               {.with_prior = false, .seed = 1, .first_sample = sample});
-            return motion_from_positions(clips.front(), start.reference);
+            return motion_from_positions(clips.front(), start.rotations);
           }};
 }
 
@@ -56,8 +55,9 @@ std::vector<ShownModel> shown_models(const Context& context) {
     const io::SafeTensors file = io::SafeTensors::read(model.file);
     const std::string where = model.file.string();
     if (holds_model<Dvgan>(file)) out.push_back(shown_text_model(model_from<Dvgan>(context, file, where)));
-    if (holds_model<ActionGan>(file) && file.metadata.contains("starts"))
-      of_classes.push_back(shown_class_model(model_from<ActionGan>(context, file, where), model.file));
+    if (!holds_model<ActionGan>(file)) continue;
+    if (auto actions = model_from<ActionGan>(context, file, where); !actions.starts().empty())
+      of_classes.push_back(shown_class_model(std::move(actions)));
   }
   std::move(of_classes.begin(), of_classes.end(), std::back_inserter(out));
   return out;

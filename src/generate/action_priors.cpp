@@ -9,7 +9,6 @@
 #include "motiongan/core/random.hpp"
 #include "motiongan/data/clip_source.hpp"
 #include "motiongan/formats/text_file.hpp"
-#include "motiongan/models/action_starts.hpp"
 #include "motiongan/motion/root_joint.hpp"
 #include "motiongan/train/run.hpp"
 #include "shared/clip_reading.hpp"
@@ -100,15 +99,12 @@ GivenPrior read_prior(const fs::path& file, const motion::PositionFormat& format
                     static_cast<std::size_t>(std::lround(seconds * format.rate)));
 }
 
-std::vector<GivenPrior> kept_priors(const fs::path& file, const motion::PositionFormat& format,
-                                    std::size_t label, std::size_t first_sample, std::size_t count) {
-  std::vector<ActionStart> starts = starts_in(io::SafeTensors::read(file), format, file.string());
-  const auto other = [&](const ActionStart& start) { return start.label != label; };
-  if (!std::all_of(starts.begin(), starts.end(), other)) std::erase_if(starts, other);
+std::vector<GivenPrior> kept_priors(const ActionGan& model, std::size_t label, std::size_t first_sample,
+                                    std::size_t count) {
   std::vector<GivenPrior> out;
-  for (std::size_t i = 0; !starts.empty() && i < count; ++i) {
-    const ActionStart& start = starts[(first_sample + i) % starts.size()];
-    const double at = static_cast<double>(start.prior.first_frame) / format.rate;
+  for (std::size_t i = 0; !model.starts().empty() && i < count; ++i) {
+    const ActionStart& start = *model.start(label, first_sample + i);
+    const double at = static_cast<double>(start.prior.first_frame) / model.format().rate;
     out.push_back({start.prior, start.rotations, fmt::format("{} from {} on", start.prior.id, duration(at))});
   }
   return out;

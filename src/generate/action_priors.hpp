@@ -1,7 +1,7 @@
 // Priors, the seconds of motion that an attention model continues: read from files, or drawn from a run's
 // clips.
 #pragma once
-#include "motiongan/data/action_prior.hpp"
+#include "motiongan/models/action_gan.hpp"
 #include "shared/action_data.hpp"
 
 namespace motiongan::command {
@@ -16,10 +16,9 @@ struct GivenPrior {
 GivenPrior read_prior(const fs::path& file, const motion::PositionFormat& format, const ActionDataArgs& data,
                       double seconds);
 
-/// Seconds that the model's file keeps (ActionStart), those of class `label` if there are any, in turn; empty
-/// if it keeps none.
-std::vector<GivenPrior> kept_priors(const fs::path& file, const motion::PositionFormat& format,
-                                    std::size_t label, std::size_t first_sample, std::size_t count);
+/// Seconds that the model keeps, see ActionGan::start(); empty if it keeps none.
+std::vector<GivenPrior> kept_priors(const ActionGan& model, std::size_t label, std::size_t first_sample,
+                                    std::size_t count);
 
 /// Draws priors from the clips that the run held out for testing (split.tsv), of class `label` if there are
 /// any; prints a note if others must be used. The prior of a sample depends only on seed and sample.

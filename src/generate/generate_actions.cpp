@@ -54,7 +54,7 @@ std::vector<GivenPrior> find_priors(const ActionGenerateArgs& args, const CLI::A
   }
   require(args.at.empty(), "--at needs --from: it says where in that clip the motion starts");
   if (args.data.empty() && !fs::is_directory(args.model))
-    if (std::vector<GivenPrior> kept = kept_priors(file, format, label, args.first_sample, args.count);
+    if (std::vector<GivenPrior> kept = kept_priors(model, label, args.first_sample, args.count);
         !kept.empty())
       return kept;
   const fs::path run = fs::is_directory(args.model) ? fs::path(args.model) : file.parent_path();

@@ -6,7 +6,6 @@
 #include "motiongan/formats/text_file.hpp"
 #include "motiongan/io/atomic_file.hpp"
 #include "motiongan/models/action_gan.hpp"
-#include "motiongan/models/action_starts.hpp"
 #include "motiongan/models/dvgan.hpp"
 #include "motiongan/models/shipped_models.hpp"
 #include "motiongan/train/run_folder.hpp"
@@ -68,14 +67,10 @@ int pack(const PackArgs& args, const CLI::App& verb) {
   const Context context;
   if (holds_model<ActionGan>(contents)) {
     ActionGan model = model_from<ActionGan>(context, contents, file.string());
-    const std::vector<ActionStart> starts = starts_of(args, verb, model.format());
+    model.set_starts(starts_of(args, verb, model.format()));
     model.save(out, stored);
-    if (!starts.empty()) {
-      io::SafeTensors packed = io::SafeTensors::read(out);
-      add_starts(packed, starts, model.format());
-      packed.write(out);
-      fmt::print("with {} to continue\n", counted(starts.size(), "second") + " of motion");
-    }
+    if (!model.starts().empty())
+      fmt::print("with {} of motion to continue\n", counted(model.starts().size(), "second"));
   } else {
     model_from<Dvgan>(context, contents, file.string()).save(out, stored);
   }

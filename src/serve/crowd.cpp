@@ -20,7 +20,7 @@ class StreamCrowd : public Crowd {
   Id add(const CrowdStart& start) override {
     CharacterStart given{.prompt = start.prompt, .seed = start.seed, .sample = start.sample};
     given.at = start.at;
-    if (priors_ != nullptr) {
+    if (priors_ != nullptr && !priors_->empty()) {
       const std::vector<motion::Motion>& own = (*priors_)[classes_->class_index(start.prompt)];
       given.prior = &own[start.sample % own.size()];
     }

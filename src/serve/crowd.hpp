@@ -42,7 +42,7 @@ class Crowd {
 std::unique_ptr<Crowd> stream_crowd(const Dvgan& model);
 
 /// Characters of a model of classes. Those of class c continue one of `priors[c]`, of which each class has at
-/// least one; the sample says which.
+/// least one; the sample says which. No priors: the model's own starts.
 std::unique_ptr<Crowd> stream_crowd(const ActionGan& model,
                                     const std::vector<std::vector<motion::Motion>>& priors);
 

@@ -11,7 +11,7 @@
 namespace motiongan::command {
 namespace {
 
-constexpr std::size_t priors_of_a_class = 3;  // that are drawn, from clips or from those of the model's file
+constexpr std::size_t priors_of_a_class = 3;  // that are drawn from clips
 
 /// The second of motion with rotations, as a stream takes it.
 motion::Motion motion_of(const GivenPrior& given, const motion::PositionFormat& format) {
@@ -35,7 +35,7 @@ ServedModel::ServedModel(const Context& context, const ServedModelArgs& args, co
   name_ = (given.has_filename() ? given : given.parent_path()).filename().string();
   if (holds_model<ActionGan>(io::SafeTensors::read(file))) {
     actions_.emplace(load_with<ActionGan>(context, file, args.model, args.weights));
-    find_priors(args, file, verb);
+    find_priors(args, verb);
     return;
   }
   for (const char* name : {"--clip", "--data", "--up", "--scale", "--fps", "--bones"})
@@ -44,7 +44,7 @@ ServedModel::ServedModel(const Context& context, const ServedModelArgs& args, co
   texts_.emplace(load_with<Dvgan>(context, file, args.model, args.weights));
 }
 
-void ServedModel::find_priors(const ServedModelArgs& args, const fs::path& file, const CLI::App& verb) {
+void ServedModel::find_priors(const ServedModelArgs& args, const CLI::App& verb) {
   const motion::PositionFormat& format = actions_->format();
   ActionDataArgs data;
   data.folder = args.data;
@@ -58,15 +58,7 @@ void ServedModel::find_priors(const ServedModelArgs& args, const fs::path& file,
     priors_.assign(format.classes.size(), all);
     return;
   }
-  if (args.data.empty() && !fs::is_directory(args.model)) {
-    for (std::size_t label = 0; label < format.classes.size(); ++label) {
-      std::vector<motion::Motion> own;
-      for (const GivenPrior& prior : kept_priors(file, format, label, 0, priors_of_a_class))
-        own.push_back(motion_of(prior, format));
-      if (!own.empty()) priors_.push_back(std::move(own));
-    }
-    if (!priors_.empty()) return;
-  }
+  if (args.data.empty() && !actions_->starts().empty()) return;  // the model's own are continued
   const char* const remedy =
       "give clips whose first second characters continue with --clip CLIP (may be repeated), or the clips to "
       "draw from with --data FOLDER";

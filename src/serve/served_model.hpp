@@ -50,12 +50,12 @@ class ServedModel {
   PromptNotes notes_on(const std::string& prompt) const;
 
  private:
-  void find_priors(const ServedModelArgs& args, const fs::path& file, const CLI::App& verb);
+  void find_priors(const ServedModelArgs& args, const CLI::App& verb);
 
   std::string name_;
   std::optional<Dvgan> texts_;
   std::optional<ActionGan> actions_;
-  std::vector<std::vector<motion::Motion>> priors_;  // by class
+  std::vector<std::vector<motion::Motion>> priors_;  // by class; empty: the model's own starts
 };
 
 }  // namespace motiongan::command

@@ -38,6 +38,12 @@ TEST_CASE("models open by the folder of a run, and errors say what is wrong") {
   std::filesystem::copy_file(files().rnn(), run.path / "generator.safetensors");
   const Handle opened(open(run.path.string()));
 
+  std::size_t shipped = 0;
+  CHECK_OK(motiongan_shipped_count(&shipped));
+  const char* name = nullptr;
+  CHECK(motiongan_shipped_name(shipped, &name) == MOTIONGAN_INVALID_ARGUMENT);
+  CHECK(name == nullptr);
+
   motiongan_clip clip = 0;
   CHECK(motiongan_clip_make(opened, "?!", 0, 1, 0, 0, &clip) == MOTIONGAN_FAILED);
   CHECK(says(motiongan_last_error(), "has no words"));

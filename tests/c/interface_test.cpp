@@ -2,8 +2,10 @@
 #include <doctest/doctest.h>
 #include <motiongan.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <motiongan/core/os.hpp>
 #include <motiongan/formats/read_motion.hpp>
 #include <motiongan/sample/action_generate.hpp>
 #include <motiongan/sample/character_stream.hpp>
@@ -262,6 +264,33 @@ TEST_CASE("a stream outlives the handles that it was made from") {
   }
   REQUIRE_OK(motiongan_stream_step(stream));
   CHECK(values_of(stream, joints).rotations.size() == 4 * joints);
+}
+
+TEST_CASE("shipped models are listed; one of classes continues motion of its own") {
+  std::size_t count = 0;
+  REQUIRE_OK(motiongan_shipped_count(&count));
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < count; ++i) {
+    const char* name = nullptr;
+    REQUIRE_OK(motiongan_shipped_name(i, &name));
+    names.emplace_back(name);
+  }
+  REQUIRE(std::find(names.begin(), names.end(), "cmu-actions") != names.end());
+  const Handle model(open("cmu-actions"));
+  motiongan_clip made = 0;
+  REQUIRE_OK(motiongan_clip_make(model, "walk", 40, 1, 2, 0, &made));
+  const Handle clip(made);
+  // This program is not beside the models; the library is.
+  const ActionGan loaded = ActionGan::load(
+      context(), os::program_path().parent_path().parent_path() / "models" / "cmu-actions.safetensors");
+  CharacterStream stream(loaded);
+  const auto id = stream.add({.prompt = "walk", .seed = 1, .sample = 2});
+  Values expected;
+  for (int frame = 0; frame < 40; ++frame) {
+    stream.step();
+    append(expected, stream.motion(id));
+  }
+  CHECK(values_of(made).rotations == expected.rotations);
 }
 
 }  // namespace interface_test

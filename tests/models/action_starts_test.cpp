@@ -1,9 +1,11 @@
-// Seconds of given motion in a model's file.
+// Seconds of given motion that a model keeps, and in its file.
 #include "motiongan/models/action_starts.hpp"
 
 #include <doctest/doctest.h>
 
+#include "../support/folders.hpp"
 #include "../support/small_actions.hpp"
+#include "motiongan/sample/action_generate.hpp"
 
 namespace action_starts_test {
 
@@ -60,6 +62,42 @@ TEST_CASE("starts come back as they were, to rounding") {
       CHECK(after[i].rotations[j].y == doctest::Approx(0.8));
   }
   CHECK(starts_in({}, small_actions().format, "here").empty());
+}
+
+TEST_CASE("a model keeps its starts in its file, and continues those of a class in turn") {
+  const Context context;
+  const motion::PositionFormat& format = small_actions().format;
+  ActionGan model(context, format, {.hidden = 8});
+  CHECK(model.starts().empty());
+  CHECK(model.start(0, 0) == nullptr);
+  CHECK(says(message_of([&] { model.generate("walk:1s", 1); }), "keeps no motion to continue"));
+  std::vector<ActionStart> starts = some_starts();
+  starts[0].label = starts[1].label = 1;
+  starts[2].label = 0;
+  model.set_starts(starts);
+  const Scratch folder;
+  model.save(folder.path / "m.safetensors", StoredWeights::half);
+  const ActionGan loaded = ActionGan::load(context, folder.path / "m.safetensors");
+  REQUIRE(loaded.starts().size() == 3);
+  CHECK(loaded.start(1, 0) == &loaded.starts()[0]);
+  CHECK(loaded.start(1, 3) == &loaded.starts()[1]);
+  CHECK(loaded.start(0, 3) == &loaded.starts()[2]);
+  // In full precision whatever the weights are stored in.
+  CHECK(loaded.starts()[0].prior.poses == starts[0].prior.poses);
+
+  const std::string schedule = format.classes[1] + ":1s";
+  const auto made = loaded.generate(schedule, 2, {.first_sample = 1});
+  REQUIRE(made.size() == 2);
+  const auto given =
+      loaded.generate({loaded.starts()[1].prior, loaded.starts()[0].prior}, schedule, {.first_sample = 1});
+  for (std::size_t i = 0; i < 2; ++i) CHECK(made[i].positions == given[i].positions);
+
+  starts[0].label = 9;
+  CHECK(says(message_of([&] { model.set_starts(starts); }), "is of class 9"));
+  starts[0].label = 0;
+  starts[0].prior.poses.pop_back();
+  CHECK(says(message_of([&] { model.set_starts(starts); }), "expected one of 2 classes and"));
+  CHECK(model.starts().size() == 3);
 }
 
 TEST_CASE("starts that do not fit are refused by name") {

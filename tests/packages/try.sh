@@ -60,7 +60,8 @@ inside "cd /root/try
   python3 -m venv --system-site-packages venv
   venv/bin/pip install --quiet --no-index ./*.whl
   apt-get purge -y 'libmotiongan*' >/dev/null
-  venv/bin/python stream.py save run"
+  venv/bin/python stream.py save run
+  cd / && root/try/venv/bin/python -c 'import motiongan as m; print(m.shipped_models(), m.Model(\"cmu-actions\").make(\"walk\", 60).frames)'"
 
 say "removal"
 quietly inside "apt-get purge -y motiongan"

@@ -28,6 +28,14 @@ class Models(unittest.TestCase):
                 self.assertTrue(all(parent < joint for joint, parent in enumerate(model.parents)))
                 self.assertEqual(model.offsets.shape, (model.joint_count, 3))
 
+    def test_shipped(self):
+        names = motiongan.shipped_models()
+        self.assertEqual(names, sorted(names))
+        self.assertIn("cmu-actions", names)
+        with Model("cmu-actions") as model:
+            clip = model.make("walk", frames=40)  # continues a second of the model's own
+            self.assertEqual(clip.get(Quantity.GLOBAL_POSITIONS).shape, (40, model.joint_count, 3))
+
     def test_versions(self):
         self.assertRegex(motiongan.__version__, r"^\d+\.\d+\.\d+$")
 

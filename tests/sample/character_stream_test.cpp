@@ -209,6 +209,33 @@ TEST_CASE("characters with a prior start where they are told") {
   }
 }
 
+TEST_CASE("without a prior characters continue the seconds that their model keeps") {
+  ActionGan model = make_actions();
+  std::vector<ActionStart> starts(3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    starts[i].label = model.format().class_index(i == 2 ? "run" : "walk");
+    starts[i].prior = prior_of(clip(i), starts[i].rotations);
+  }
+  model.set_starts(starts);
+  CharacterStream stream(model);
+  ActionStream inner(model);
+  // Two of a walk in turn, one of a run; a jump has none and takes any.
+  for (const auto& [prompt, sample, from] :
+       {std::tuple{"walk", 0u, 0u}, {"walk", 1u, 1u}, {"walk", 2u, 0u}, {"run", 5u, 2u}, {"jump", 1u, 1u}}) {
+    const auto id = stream.add({.prompt = prompt, .seed = 4, .sample = sample});
+    const auto expected = inner.add({.prior = &starts[from].prior,
+                                     .label = model.format().class_index(prompt),
+                                     .seed = 4,
+                                     .sample = sample});
+    stream.step();
+    inner.step();
+    const Motion whole = motion::motion_from_positions(inner.clip(expected), starts[from].rotations);
+    CHECK(alike(stream.motion(id), motion::slice(whole, 0, 1)));
+    stream.remove(id);
+    inner.remove(expected);
+  }
+}
+
 TEST_CASE("invalid calls are rejected and change nothing") {
   CharacterStream stream(actions()), speaking(texts());
   const Motion short_clip = motion::slice(clip(0), 0, 10);

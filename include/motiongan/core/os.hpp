@@ -6,6 +6,7 @@
 #error "motiongan knows POSIX systems only; motiongan/core/os.hpp is the file to port"
 #endif
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/ioctl.h>
@@ -120,6 +121,14 @@ inline long process_id() { return ::getpid(); }
 inline std::filesystem::path program_path() {
   std::error_code problem;
   return std::filesystem::read_symlink("/proc/self/exe", problem);
+}
+
+/// The path of the shared library that this function is compiled into, or of the program; empty where the
+/// system does not say.
+inline std::filesystem::path module_path() {
+  Dl_info found{};
+  const void* const here = reinterpret_cast<const void*>(&module_path);
+  return ::dladdr(here, &found) != 0 && found.dli_fname != nullptr ? found.dli_fname : "";
 }
 
 /// The machine's name on the network; empty if it has none.

@@ -8,6 +8,7 @@
 #include "motiongan/data/action_prior.hpp"
 #include "motiongan/data/action_schedule.hpp"
 #include "motiongan/data/position_format_json.hpp"
+#include "motiongan/models/action_starts.hpp"
 #include "motiongan/models/model_file.hpp"
 #include "motiongan/networks/attention_generator.hpp"
 #include "motiongan/networks/lstm_baseline.hpp"
@@ -95,6 +96,31 @@ class ActionGan {
     std::visit([&](auto& generator) { generator.list_parameters(list); }, generator_);
   }
 
+  /// Seconds of motion that the model keeps in its file, to continue where no other is given. Empty unless
+  /// set_starts() gave some; `motiongan pack` does.
+  const std::vector<ActionStart>& starts() const { return starts_; }
+  /// Throws Error if a start does not fit the model's format.
+  void set_starts(std::vector<ActionStart> starts) {
+    for (const ActionStart& start : starts)
+      require(
+          start.label < format_.classes.size() && start.prior.poses.size() == format_.frames * format_.dof(),
+          "the start ", start.prior.id, " is of class ", start.label, " with ", start.prior.poses.size(),
+          " values, expected one of ", format_.classes.size(), " classes and ", format_.frames, " frames of ",
+          format_.dof());
+    starts_ = std::move(starts);
+  }
+  /// The start that motion of a class continues: those of clips of this class in turn, by `sample`; of other
+  /// classes if there are none. Null if the model keeps none.
+  const ActionStart* start(std::size_t label, std::size_t sample) const {
+    std::vector<const ActionStart*> own, all;
+    for (const ActionStart& start : starts_) {
+      all.push_back(&start);
+      if (start.label == label) own.push_back(&start);
+    }
+    const std::vector<const ActionStart*>& from = own.empty() ? all : own;
+    return from.empty() ? nullptr : from[sample % from.size()];
+  }
+
   /// The T frames [T, B, dof] that follow a prior [T, B, dof], both normalised, of classes [B, Y] (one-hot).
   /// `key` selects the noise, if the model takes noise.
   Var forward(const Var& prior, const Var& classes, const RandomKey& key = {}) const {
@@ -118,9 +144,13 @@ class ActionGan {
                                              const ActionGenerateOptions& options = {}) const;
 
   /// The same with a schedule such as "walk:3s,run:5s", see parse_action_schedule().
-  /// Both are defined in motiongan/sample/action_generate.hpp.
   std::vector<motion::PositionClip> generate(const std::vector<ActionPrior>& priors,
                                              std::string_view schedule,
+                                             const ActionGenerateOptions& options = {}) const;
+
+  /// `count` clips that continue the model's own starts. Throws Error if it keeps none. All three are defined
+  /// in motiongan/sample/action_generate.hpp.
+  std::vector<motion::PositionClip> generate(std::string_view schedule, std::size_t count = 1,
                                              const ActionGenerateOptions& options = {}) const;
 
   /// Rounds all weights to bfloat16 (PyTorch's module.bfloat16(), but computing stays in the context's
@@ -152,6 +182,12 @@ class ActionGan {
   static Format read_format(const std::string& text, const std::string& where) {
     return io::position_format_from_text(text, where);
   }
+  void write_extras(io::SafeTensors& file) const {
+    if (!starts_.empty()) add_starts(file, starts_, format_);
+  }
+  void read_extras(const io::SafeTensors& file, const std::string& where) {
+    starts_ = starts_in(file, format_, where);
+  }
 
  private:
   using Network = std::variant<AttentionGenerator, LstmBaseline>;
@@ -182,6 +218,7 @@ class ActionGan {
   motion::PositionFormat format_;
   ActionGanOptions options_;
   Network generator_;
+  std::vector<ActionStart> starts_;
 };
 
 }  // namespace motiongan

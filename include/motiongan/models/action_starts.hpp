@@ -1,10 +1,10 @@
-// Starts: seconds of given motion in the file of a class-conditioned model, for it to continue where the
-// clips that it was trained on are not at hand.
+// Starts: seconds of given motion that a class-conditioned model keeps, for it to continue where the clips
+// that it was trained on are not at hand.
 //
-// The metadata contain "starts", a JSON list of {"clip", "frame", "class"}; start number N is the tensors
-// "start.N.poses" [T, dof], "start.N.positions" [T, joints, 3], "start.N.places" [T, 4] (x, z, yaw, height),
-// "start.N.offsets" [joints, 3] and, where the clip had rotations, "start.N.rotations" [joints, 4] (w, x, y,
-// z), all F32.
+// In a model file, the metadata contain "starts", a JSON list of {"clip", "frame", "class"}; start number N
+// is the tensors "start.N.poses" [T, dof], "start.N.positions" [T, joints, 3], "start.N.places" [T, 4] (x, z,
+// yaw, height), "start.N.offsets" [joints, 3] and, where the clip had rotations, "start.N.rotations" [joints,
+// 4] (w, x, y, z), all F32.
 #pragma once
 #include <algorithm>
 #include <array>

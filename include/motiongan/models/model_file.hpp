@@ -8,6 +8,7 @@
 //   kind_of(options)      that member
 //   part_name             the prefix of its tensors in a checkpoint
 //   made_by               the command that trains one
+// and may have write_extras(file) and read_extras(file, where), for what a model file holds beside these.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -90,6 +91,7 @@ void save_model(Model& model, const std::filesystem::path& path,
   io::save_parameters(named_parameters(model), file);
   if (stored == StoredWeights::half)
     for (auto& [name, tensor] : file.tensors) tensor = tensor.as_half();
+  if constexpr (requires { model.write_extras(file); }) model.write_extras(file);
   file.write(path);
 }
 
@@ -167,6 +169,7 @@ Model model_from(const Context& context, const io::SafeTensors& file, const std:
   const ParameterLimit limit(most_parameters(file), where);
   Model model(context, std::move(format), options);
   io::load_parameters(named_parameters(model), file, where, prefix);
+  if constexpr (requires { model.read_extras(file, where); }) model.read_extras(file, where);
   return model;
 }
 

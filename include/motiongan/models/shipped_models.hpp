@@ -28,8 +28,9 @@ struct ShippedModel {
 inline constexpr std::string_view shipped_list = "SHA256SUMS";
 
 /// The folders that are searched for models: those of the environment variable MOTIONGAN_MODELS, which are
-/// separated by colons; `models` beside the running program; share/motiongan/models where it, or this
-/// library, is installed; and the same in /usr/local and /usr.
+/// separated by colons; `models` beside the running program, and beside the shared library that this is
+/// compiled into; share/motiongan/models where the program, or this library, is installed; and the same in
+/// /usr/local and /usr.
 inline std::vector<std::filesystem::path> model_folders() {
   std::vector<std::filesystem::path> out;
   if (const char* given = std::getenv("MOTIONGAN_MODELS")) {
@@ -42,6 +43,8 @@ inline std::vector<std::filesystem::path> model_folders() {
     out.push_back(program.parent_path() / "models");
     out.push_back(program.parent_path().parent_path() / share);
   }
+  if (const std::filesystem::path module = os::module_path(); module.has_parent_path())
+    out.push_back(module.parent_path() / "models");
 #ifdef MOTIONGAN_MODELS_FOLDER  // where it is installed, from CMake
   out.emplace_back(MOTIONGAN_MODELS_FOLDER);
 #endif

@@ -49,6 +49,18 @@ inline std::vector<motion::PositionClip> ActionGan::generate(const std::vector<A
   return generate(priors, parse_action_schedule(schedule, format_), options);
 }
 
+inline std::vector<motion::PositionClip> ActionGan::generate(std::string_view schedule, std::size_t count,
+                                                             const ActionGenerateOptions& options) const {
+  const ActionSchedule parsed = parse_action_schedule(schedule, format_);
+  std::vector<ActionPrior> priors;
+  for (std::size_t i = 0; i < count; ++i) {
+    const ActionStart* const own = start(parsed.front().label, options.first_sample + i);
+    require(own != nullptr, "the model keeps no motion to continue; give priors (see prior_from)");
+    priors.push_back(own->prior);
+  }
+  return generate(priors, parsed, options);
+}
+
 /// A clip of which all but the first T frames are generated.
 struct SyntheticClip {
   motion::PositionClip clip;  ///< as long as the real clip, with the real first T frames

@@ -51,6 +51,7 @@ class ActionStream {
 
   /// The number of characters.
   std::size_t size() const { return characters_.size(); }
+  const ActionGan& model() const { return model_; }
   const motion::PositionFormat& format() const { return format_; }
 
   /// Adds a character; it moves with the next step. Throws Error without a prior of T frames and for an

@@ -25,7 +25,7 @@ struct CharacterStart {
   std::uint64_t seed = 1;    ///< seed of the noise, if the model takes noise
   std::uint32_t sample = 0;  ///< selects the noise within a seed
   /// Motion to continue from its last frame, at any frame rate; only read by add(). A model of classes needs
-  /// it, and a second of it.
+  /// a second of it, unless it keeps such seconds itself (ActionGan::starts()).
   const motion::Motion* prior = nullptr;
   /// Where it starts: ground position and heading. With a prior, that of the prior's last frame. Unset: the
   /// prior's own place, or the origin. See CharacterOptions::at for what the forms of a root make of it.
@@ -69,7 +69,7 @@ class CharacterStream {
   std::size_t size() const { return characters_.size(); }
   /// Frames per second.
   double rate() const { return actions() ? actions()->format().rate : texts()->rate(); }
-  /// Whether prompts are names of classes, and characters need a prior.
+  /// Whether prompts are names of classes, and characters continue a prior.
   bool has_classes() const { return actions() != nullptr; }
   /// The model's skeleton. A character with a prior has the prior's bone lengths instead. Its joints are in
   /// the order of a BVH file, depth first, also if those of a model of classes are not.
@@ -218,19 +218,27 @@ class CharacterStream {
     };
     std::map<const motion::Motion*, Given> given;  // characters with the same prior share it
     std::vector<ActionCharacterOptions> options;
+    std::vector<Character> characters;
     for (const CharacterStart& s : starts) {
       const std::size_t label = actions()->format().class_index(s.prompt);
-      require(s.prior != nullptr, "a character of a model of classes needs a prior: ", seconds_needed(),
-              " of motion to continue");
+      if (s.prior == nullptr) {
+        const ActionStart* const own = actions()->model().start(label, s.sample);
+        require(own != nullptr, "a character of a model of classes needs a prior: ", seconds_needed(),
+                " of motion to continue; this model keeps none of its own");
+        options.push_back({&own->prior, label, s.seed, s.sample});
+        characters.push_back({.reference = own->rotations});
+        continue;
+      }
       if (!given.contains(s.prior)) {
         Given& g = given[s.prior];
         g.prior = last_second(*s.prior, g.character.reference);
       }
       options.push_back({&given.at(s.prior).prior, label, s.seed, s.sample});
+      characters.push_back(given.at(s.prior).character);
     }
     std::vector<Id> ids = actions()->add(options);
     for (std::size_t i = 0; i < ids.size(); ++i) {
-      characters_.emplace(ids[i], given.at(starts[i].prior).character);
+      characters_.emplace(ids[i], std::move(characters[i]));
       if (!starts[i].at) continue;
       motion::RootTrack& track = actions()->track(ids[i]);
       track.x = starts[i].at->x, track.z = starts[i].at->z, track.yaw = starts[i].at->yaw;

@@ -2,8 +2,8 @@
 
     import motiongan, numpy
 
-    model = motiongan.Model("save/rnn")                           # a run's folder or a model file
-    model.make("run", frames=300, seed=7).write("run.bvh")        # a clip
+    model = motiongan.Model("cmu-stream")                         # a shipped model, a run's folder or a model file
+    model.make("walk", frames=300, seed=7).write("walk.bvh")      # a clip
 
     stream = model.stream()                                       # characters, frame by frame
     ids = stream.add([motiongan.Start("walk", sample=i) for i in range(10)])
@@ -23,8 +23,14 @@ import os as _os
 from . import _library
 from ._library import Error
 
-__all__ = ["Clip", "Error", "Kind", "Model", "Quantity", "Start", "Stream", "__version__"]
+__all__ = ["Clip", "Error", "Kind", "Model", "Quantity", "Start", "Stream", "__version__", "shipped_models"]
 __version__ = _library.version()
+
+
+def shipped_models():
+    """The names of the trained models that are installed, for Model()."""
+    count = _library.ask("shipped_count", _c.c_size_t)
+    return [_library.ask("shipped_name", _c.c_char_p, i).decode() for i in range(count)]
 
 
 class Kind(_enum.IntEnum):
@@ -32,7 +38,7 @@ class Kind(_enum.IntEnum):
 
     TEXT_WINDOW = 1  # of texts: clips of one length, no streams, no priors
     TEXT_STREAM = 2  # of texts: clips of any length, streams, priors
-    CLASSES = 3  # of classes: clips of any length and streams, which continue a prior
+    CLASSES = 3  # of classes: clips of any length and streams, which continue a prior or a second of its own
 
 
 class Quantity(_enum.IntEnum):
@@ -218,7 +224,7 @@ class Model(_Skeleton):
     """A trained model."""
 
     def __init__(self, path, device=None):
-        """Opens a model file or a run's folder. The device is "cpu", "gpu", a part of its name or "NAME:index"."""
+        """Opens a model file, a run's folder or a shipped model by its name. The device is "cpu", "gpu", a part of its name or "NAME:index"."""
         super().__init__(_library.ask("model_open", _library.Handle, _os.fsencode(path), device and device.encode()))
 
     @property
@@ -248,7 +254,7 @@ class Model(_Skeleton):
 
     def make(self, prompt, frames=0, seed=1, sample=0, prior=None):
         """A Clip for a text or a class; 0 frames: as many as it makes at once. It continues `prior`, a Clip, which
-        a model of classes needs and a Kind.TEXT_WINDOW cannot use."""
+        a Kind.TEXT_WINDOW cannot use; without one a model of classes continues a second that it keeps itself."""
         return Clip(_library.ask("clip_make", _library.Handle, self._handle, prompt.encode(), frames, seed, sample,
                                  prior._handle if prior else 0))
 

@@ -23,6 +23,8 @@ _TEXT = c.POINTER(c.c_char_p)
 # The arguments of each function that returns a status. Without them ctypes would pass integers of 32 bits.
 _SIGNATURES = {
     "close": [Handle],
+    "shipped_count": [_SIZE],
+    "shipped_name": [c.c_size_t, _TEXT],
     "model_open": [c.c_char_p, c.c_char_p, _NEW],
     "model_kind": [Handle, c.POINTER(c.c_int32)],
     "model_rate": [Handle, _DOUBLE],
