@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -57,9 +58,14 @@ inline bool replaces(const std::filesystem::path& output, const std::filesystem:
 
 }  // namespace output_detail
 
-/// Throws Error if one of the files, which `option` writes, is one of `inputs` (files, or folders of clips).
+/// Throws Error if one of the files, which `option` writes, is one of `inputs` (files, or folders of clips),
+/// or is there twice, so that one clip would replace another.
 inline void check_outputs(std::string_view option, const std::vector<std::filesystem::path>& files,
                           const std::vector<std::filesystem::path>& inputs) {
+  std::set<std::filesystem::path> names;
+  for (const auto& file : files)
+    require(names.insert(file).second, option, ": two clips would be written as ", file.string(),
+            "; give them by the folder that contains both, or write them to different folders");
   for (const auto& file : files)
     for (const auto& input : inputs)
       require(!output_detail::replaces(file, input), option, ": ", file.string(),

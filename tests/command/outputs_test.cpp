@@ -77,6 +77,7 @@ TEST_CASE("files in a folder of clips are inputs, results of earlier calls are n
   };
   CHECK(says(several({"b.bvh", "clips/sub/../sub/a.bvh"}), "a.bvh is an input and would be replaced"));
   CHECK(several({"a.bvh", "clips/b.bvh", "clips-2/a.bvh"}) == "no error");
+  CHECK(says(several({"new/a.bvh", "new/b.bvh", "new/a.bvh"}), "two clips would be written as new/a.bvh"));
   CHECK(
       says(message_of([&] { check_output_folder("--out", "clips/sub/..", inputs); }), "is an input; choose"));
   CHECK(message_of([&] { check_output_folder("--out", "new", inputs); }) == "no error");
@@ -98,6 +99,11 @@ TEST_CASE("the command keeps clips that an option names by mistake") {
   refused("compare --generated clips --real clips --csv clips/walk_000.bvh", "cannot end in .bvh");
   refused("evaluate motion --generated clips --real clips --json clips/run_001.bvh", "cannot end in .bvh");
   refused("compare --generated clips --real clips --csv clips/captions.tsv", "captions.tsv is an input");
+  fs::create_directory("others");
+  fs::copy_file("clips/walk_000.bvh", "others/walk_000.bvh");
+  refused("clean clips/walk_000.bvh others/walk_000.bvh --out cleaned",
+          "two clips would be written as cleaned/walk_000.bvh");
+  CHECK_FALSE(fs::exists("cleaned"));
   CHECK(bytes_of("clips/walk_000.bvh") == walk);
   CHECK(bytes_of("clips/run_001.bvh") == run);
 }
