@@ -26,8 +26,8 @@ inline void add_preset_option(CLI::App& verb, TrainingPreset& preset, const std:
 }
 
 inline constexpr const char* dvgan_presets =
-    "steady: --root-rotation support (velocity and --leak 0.1 for an RNN generator), --critic-sees both, "
-    "--loss-smooth 1, --loss-contact 1, --ema 0.999; paper: expmap, rotations, 0, 0, 0";
+    "steady: --root-rotation support, --leak 0.1 for an RNN generator, --critic-sees both, --loss-smooth 1, "
+    "--loss-contact 1, --ema 0.999; paper: expmap, 0, rotations, 0, 0, 0";
 inline constexpr const char* attention_presets =
     "steady: --exact-bones, --from-last-pose, --critic-directions, --ema 0.999; paper: none of them";
 
@@ -42,9 +42,7 @@ inline void apply(TrainingPreset preset, DvganArgs& args, const CLI::App& verb) 
   const bool steady = preset == TrainingPreset::steady;
   const bool recurrent = args.model.generator == GeneratorKind::rnn;
   set_default(verb, "--root-rotation", args.data.root_rotation,
-              std::optional(!steady     ? motion::RootRotation::expmap
-                            : recurrent ? motion::RootRotation::velocity
-                                        : motion::RootRotation::support));
+              std::optional(steady ? motion::RootRotation::support : motion::RootRotation::expmap));
   set_default(verb, "--leak", args.model.leak, steady && recurrent ? 0.1 : 0.0);
   // Velocities need two frames, jerk needs four.
   const bool moves = steady && args.data.frames >= 2, jerks = steady && args.data.frames >= 4;
