@@ -70,8 +70,11 @@ void print_difference(const std::vector<DvganAblationRow>& rows, std::string_vie
   };
   const MeanStd recall = difference(1), score = difference(0);
   if (recall.count == 0) return;
-  fmt::print("{} over {}, paired by seed ({}): R@1 {:+.1f} ± {:.1f}, IS {:+.2f} ± {:.2f}\n", b, a,
-             counted(recall.count, "pair"), recall.mean, recall.spread, score.mean, score.spread);
+  const auto text = [](const MeanStd& m, int decimals) {
+    return cell(m, [&](double value) { return fmt::format("{:.{}f}", value, decimals); });
+  };
+  fmt::print("{} over {}, paired by seed ({}): R@1 {}{}, IS {}{}\n", b, a, counted(recall.count, "pair"),
+             recall.mean > 0 ? "+" : "", text(recall, 1), score.mean > 0 ? "+" : "", text(score, 2));
 }
 
 void write_files(const fs::path& save, const std::vector<DvganAblationRow>& rows,
@@ -176,9 +179,10 @@ void report_dvgan_variants(const Context& context, const motion::Dataset& data, 
   require(!rows.empty(), save.string(), " holds none of the requested models; train them first");
 
   const auto [least, most] = std::minmax_element(budgets.begin(), budgets.end());
-  fmt::print("\nK = {} of {}, {} motions each; {} to {} iterations\n\n",
-             counted(real.measures.retrieval.descriptions, "description"), counted(real.clips, "test clip"),
-             real.measures.motions, *least, *most);
+  fmt::print(
+      "\nK = {} of {}, {} motions each; {}\n\n", counted(real.measures.retrieval.descriptions, "description"),
+      counted(real.clips, "test clip"), real.measures.motions,
+      *least == *most ? counted(*most, "iteration") : fmt::format("{} to {} iterations", *least, *most));
   std::vector<Row> lines;
   for (const DvganAblationRow& row : rows) {
     lines.push_back(cells(row));

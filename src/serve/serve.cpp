@@ -65,10 +65,10 @@ const Verb serve_verb{
           ->capture_default_str();
       add_weights_option(*verb, args->model.weights);
       const char* const group = "Class-conditioned models";
-      verb->add_option(
-              "--clip", args->model.clips,
-              "clip whose first second characters continue; may be repeated [drawn from the run's test "
-              "clips]")
+      verb->add_option("--clip", args->model.clips,
+                       "clip whose first second characters continue; may be repeated [those that the model's "
+                       "file keeps, "
+                       "else drawn from the run's test clips]")
           ->type_name("CLIP")
           ->expected(1)
           ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
