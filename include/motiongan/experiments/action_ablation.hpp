@@ -124,10 +124,10 @@ inline void write_angles(const std::filesystem::path& path, const ActionEvaluati
 /// A column of the study's tables.
 struct ActionColumn {
   double ActionMeasures::*measure;
-  std::string_view stem;         ///< of its name
-  std::string_view unit = "";    ///< of a length, if lengths are in metres: "mm" or "m"
-  std::string_view ending = "";  ///< of its name, after the unit
-  bool over_long_run = false;    ///< of the long rollout
+  std::string_view stem;       ///< of its name
+  std::string_view unit{};     ///< of a length, if lengths are in metres: "mm" or "m"
+  std::string_view ending{};   ///< of its name, after the unit
+  bool over_long_run = false;  ///< of the long rollout
 
   std::string name(bool metres) const {
     return concat(stem, metres && !unit.empty() ? concat("_", unit) : std::string(), ending);

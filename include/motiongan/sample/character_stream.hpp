@@ -85,7 +85,7 @@ class CharacterStream {
 
   /// Adds them all, which costs little more than adding one. If one throws, none is added.
   std::vector<Id> add(std::span<const CharacterStart> starts) {
-    const std::vector<Id> added = actions() ? add_actions(starts) : add_texts(starts);
+    std::vector<Id> added = actions() ? add_actions(starts) : add_texts(starts);
     ids_.insert(ids_.end(), added.begin(), added.end());
     return added;
   }
