@@ -16,7 +16,7 @@ namespace motiongan::command {
 namespace {
 
 struct PlotArgs {
-  std::vector<std::string> runs;
+  std::vector<std::string> runs, curves;
   std::string png, html;
   bool data = true;
 };
@@ -35,14 +35,19 @@ Run read_run(const fs::path& given) {
   return run;
 }
 
-/// One plot for every loss, of all runs that have it.
-std::vector<view::Image> plots(const std::vector<Run>& runs) {
+/// One plot for every loss, or for each of those that were `asked` for, of all runs that have it.
+std::vector<view::Image> plots(const std::vector<Run>& runs, const std::vector<std::string>& asked) {
   const std::set<std::string> not_drawn{"iteration", "seconds", "iterations_per_second"};
   std::vector<std::string> columns;
   for (const Run& run : runs)
     for (const std::string& name : run.log.columns)
       if (!not_drawn.contains(name) && std::find(columns.begin(), columns.end(), name) == columns.end())
         columns.push_back(name);
+  for (const std::string& name : asked)
+    require(std::find(columns.begin(), columns.end(), name) != columns.end(),
+            "--curves: no run has logged \"", name, "\"; the curves are ",
+            fmt::format("{}", fmt::join(columns, ", ")));
+  if (!asked.empty()) columns = asked;
   std::vector<view::Image> out;
   for (const std::string& name : columns) {
     std::vector<view::Series> series;
@@ -187,7 +192,7 @@ int plot(PlotArgs args, const CLI::App& verb) {
     fmt::print("{}\n", title);
     for (const auto& [name, text] : facts) fmt::print("  {:<22} {}\n", name, text);
   }
-  const std::vector<view::Image> images = plots(runs);
+  const std::vector<view::Image> images = plots(runs, args.curves);
   make_folder_of(args.png);
   write_png(args.png, stacked(images));
   make_folder_of(args.html);
@@ -208,6 +213,10 @@ const Verb plot_verb{
           ->type_name("FILE");
       verb->add_option("--html", args->html, "page to write [plot.html in the folder of a single run]")
           ->type_name("FILE");
+      verb->add_option("--curves", args->curves,
+                       "columns of log.csv to draw, such as wasserstein,penalty [all]")
+          ->delimiter(',')
+          ->type_name("A,B");
       verb->add_flag("--data,!--no-data", args->data, "read the run's clips and describe them [on]");
       verb->callback([&job, args, verb] { job = [args, verb] { return plot(*args, *verb); }; });
     }};

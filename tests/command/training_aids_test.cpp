@@ -35,6 +35,21 @@ TEST_CASE("a training writes previews, and its log is plotted") {
   CHECK(none.status == 1);
   CHECK(none.has("nowhere"));
   CHECK(call("plot run --png curves.txt").status == 1);
+  const auto pictures = [] {
+    const std::string written = bytes_of("some.html");
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = written.find("<img ", at)) != std::string::npos; ++at) ++count;
+    return count;
+  };
+  const std::string some = "plot run --no-data --png some.png --html some.html --curves ";
+  CHECK(call(some + "wasserstein").status == 0);
+  CHECK(pictures() == 1);
+  CHECK(call(some + "penalty,wasserstein").status == 0);
+  CHECK(pictures() == 2);
+  const Said unknown = call(some + "seconds");
+  CHECK(unknown.status == 1);
+  CHECK_MESSAGE(unknown.has("no run has logged \"seconds\"; the curves are wasserstein, penalty"),
+                unknown.text);
 }
 
 TEST_CASE("mirrored and stretched clips, by description, what the body shows, a schedule") {
