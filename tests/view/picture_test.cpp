@@ -140,6 +140,15 @@ TEST_CASE("a plot draws each series in its colour") {
   CHECK_THROWS_AS(view::line_plot(std::vector<view::Series>{}), Error);
 }
 
+TEST_CASE("a legend takes as many lines as it needs") {
+  std::vector<view::Series> series;
+  for (int i = 0; i < 4; ++i) series.push_back({"the name of a training run", {0, 1}, {0, 1}});
+  const view::Image plot = view::line_plot(series, {.width = 480, .height = 320});
+  // One name fills more than half of a line.
+  for (std::size_t i = 0; i < 4; ++i)
+    CHECK(count(plot, view::palette(i), 0, 100, 24 + 20 * i - 3, 24 + 20 * i + 4) > 40);
+}
+
 TEST_CASE("axes have round numbers") {
   const auto axis = view::detail::nice_axis(-3.2, 47, 6);
   CHECK(axis.step == doctest::Approx(10));

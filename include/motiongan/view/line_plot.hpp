@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "motiongan/core/error.hpp"
@@ -94,7 +95,18 @@ inline Image line_plot(std::span<const Series> series, const PlotOptions& option
     numbers = std::max(numbers, text_width(detail::axis_number(v, y_axis.step)));
 
   const double left = numbers + 22, right = width - 30;
-  const double top = options.title.empty() ? 44 : 72, bottom = height - (options.x_label.empty() ? 36 : 58);
+  // The legend, in as many lines as it needs.
+  constexpr double legend_line = 20;
+  std::vector<std::pair<double, double>> legend;  // x, and how far below the first line
+  double next = left, below = 0;
+  for (const Series& s : series) {
+    const double length = 30 + text_width(s.name);
+    if (next > left && next + length > width - 8) next = left, below += legend_line;
+    legend.emplace_back(next, below);
+    next += length + 26;
+  }
+  const double legend_top = options.title.empty() ? 24 : 52;
+  const double top = legend_top + 20 + below, bottom = height - (options.x_label.empty() ? 36 : 58);
   const Color ink{0x1b, 0x1f, 0x24}, soft{0x5b, 0x65, 0x70}, grid{0xe2, 0xe6, 0xea};
   Image image(options.width, options.height);
   Canvas canvas(image);
@@ -119,7 +131,6 @@ inline Image line_plot(std::span<const Series> series, const PlotOptions& option
   canvas.text(left, 14, fitted(options.title, width - left - 8), ink);
   canvas.text((left + right - text_width(options.x_label)) / 2, height - 24, options.x_label, soft);
 
-  double legend = left;
   for (std::size_t k = 0; k < series.size(); ++k) {
     const Series& s = series[k];
     const Color color = palette(k);
@@ -132,9 +143,9 @@ inline Image line_plot(std::span<const Series> series, const PlotOptions& option
       else
         canvas.disc(x, y, 1.5, color);
     }
-    canvas.line(legend, top - 20, legend + 22, top - 20, 4, color);
-    canvas.text(legend + 30, top - 27, s.name, ink);
-    legend += 30 + text_width(s.name) + 26;
+    const auto [x, down] = legend[k];
+    canvas.line(x, legend_top + down, x + 22, legend_top + down, 4, color);
+    canvas.text(x + 30, legend_top + down - 7, s.name, ink);
   }
   return image;
 }
