@@ -148,11 +148,11 @@ void print_tables(const ActionEvaluation& evaluation, std::span<const AblationRe
   const auto add = [&](const AblationResult& r, std::string_view paper) {
     if (r.name != "truth") {
       const std::size_t iterations = r.runs.front().iterations;
-      angles.push_back({r.name, iterations > 0 ? std::to_string(iterations) : "",
-                        text_of(r.over_seeds(&M::curve_error)), text_of(r.over_seeds(&M::curve_error_first)),
-                        text_of(r.over_seeds(&M::curve_error_last)), text_of(r.over_seeds(&M::window_error)),
-                        fmt::format("{:.3g}", r.over_seeds(&M::window_error_deviation).mean),
-                        std::string(paper)});
+      angles.push_back(
+          {r.name, std::to_string(r.runs.size()), iterations > 0 ? std::to_string(iterations) : "",
+           text_of(r.over_seeds(&M::curve_error)), text_of(r.over_seeds(&M::curve_error_first)),
+           text_of(r.over_seeds(&M::curve_error_last)), text_of(r.over_seeds(&M::window_error)),
+           fmt::format("{:.3g}", r.over_seeds(&M::window_error_deviation).mean), std::string(paper)});
     }
     std::vector<std::string> row{r.name,
                                  text_of(r.over_seeds(&M::bone_error)),
@@ -177,8 +177,9 @@ void print_tables(const ActionEvaluation& evaluation, std::span<const AblationRe
       "curve (all frames, first second, last second), and of each window against its own ground truth,\n"
       "with its standard deviation between windows\n",
       evaluation.truth().angles.size());
-  print_table({"", "iterations", "curve", "first s", "last s", "window", "deviation", "the paper says"},
-              angles, "lrrrrrrl", "  ");
+  print_table(
+      {"", "seeds", "iterations", "curve", "first s", "last s", "window", "deviation", "the paper says"},
+      angles, "lrrrrrrrl", "  ");
   const std::string small = metres ? " mm" : "", large = metres ? " m" : "";
   fmt::print(
       "\nmotion{}: error of the bone lengths against the prior; mean step of the joints between seconds\n"
@@ -264,8 +265,8 @@ void report_variants(const Context& context, const motion::ActionDataset& data, 
 
   print_tables(evaluation, results, metres);
   if (!claims.empty())
-    fmt::print("\ndoes it agree with what the paper says? ({} each; even: within 10%{})\n",
-               counted(seeds.size(), "seed"), seeds.size() > 1 ? " or two standard errors" : "");
+    fmt::print("\ndoes it agree with what the paper says? (even: within 10%{})\n",
+               seeds.size() > 1 ? " or two standard errors" : "; one seed is a single sample");
   for (const AblationClaim& claim : claims)
     fmt::print("  {:<4} {} ({})\n",
                claim.verdict == Verdict::yes  ? "yes"

@@ -67,8 +67,7 @@ const Verb serve_verb{
       const char* const group = "Class-conditioned models";
       verb->add_option("--clip", args->model.clips,
                        "clip whose first second characters continue; may be repeated [those that the model's "
-                       "file keeps, "
-                       "else drawn from the run's test clips]")
+                       "file keeps, else drawn from the run's test clips]")
           ->type_name("CLIP")
           ->expected(1)
           ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
