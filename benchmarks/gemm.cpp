@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <map>
 #include <motiongan/core/gemm.hpp>
@@ -133,6 +134,10 @@ std::map<std::string, double> openblas_rates([[maybe_unused]] const std::vector<
   if (child == 0) {
     dup2(ends[1], STDOUT_FILENO);
     close(ends[0]);
+#ifdef __x86_64__
+    // An OpenBLAS older than the processor takes kernels of 256 bits.
+    if (__builtin_cpu_supports("avx512f")) setenv("OPENBLAS_CORETYPE", "SkylakeX", 0);
+#endif
     std::vector<char*> arguments;
     std::vector<std::string> texts{"bench_gemm", "--openblas"};
     texts.insert(texts.end(), names.begin(), names.end());
