@@ -106,6 +106,17 @@ RunStart begin_run(RunArgs& args, const fs::path& save, bool has_data, const CLI
   return start;
 }
 
+RunFolder::RunFolder(const RunArgs& args, const RunStart& start) {
+  if (args.dry_run) return;
+  for (fs::path at = start.folder; !at.empty() && !fs::exists(at); at = at.parent_path()) made_.push_back(at);
+  make_folder(start.folder);
+}
+RunFolder::~RunFolder() {
+  std::error_code is_not_empty;
+  for (const fs::path& folder : made_)
+    if (!fs::remove(folder, is_not_empty)) break;
+}
+
 bool is_done(const RunStart& start, const RunArgs& args, std::size_t iterations) {
   if (!args.resume || start.done < iterations) return false;
   fmt::print("{} has all its {} already; train longer with --iterations N\n", start.folder.string(),

@@ -44,6 +44,20 @@ struct RunStart {
 RunStart begin_run(RunArgs& args, const fs::path& save, bool has_data, const CLI::App& verb,
                    const std::function<void(const std::string& note, const fs::path& checkpoint)>& take);
 
+/// The folder of a run, made where it is missing, and removed again if nothing was written to it: a training
+/// that is refused leaves no folder.
+class RunFolder {
+ public:
+  /// A dry run makes none.
+  RunFolder(const RunArgs& args, const RunStart& start);
+  ~RunFolder();
+  RunFolder(const RunFolder&) = delete;
+  RunFolder& operator=(const RunFolder&) = delete;
+
+ private:
+  std::vector<fs::path> made_;  ///< the folder, then its parents
+};
+
 /// Whether a resumed run has all its iterations already; prints so if it has.
 bool is_done(const RunStart& start, const RunArgs& args, std::size_t iterations);
 

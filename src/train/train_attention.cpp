@@ -105,7 +105,7 @@ int train_attention(AttentionArgs args, const CLI::App& verb) {
   if (args.model.generator == ActionGenerator::lstm) check_baseline(args, verb);
   args.training.adam.schedule.fix(args.training.iterations);
   if (is_done(start, args.run, args.training.iterations)) return 0;
-  if (!args.run.dry_run) make_folder(start.folder);
+  const RunFolder folder(args.run, start);
 
   const Context context;
   const motion::ActionDataset data = load_data(args.data);

@@ -21,7 +21,7 @@ int train_dvgan(TrainDvganArgs args, const CLI::App& verb) {
   if (!args.run.resume) apply(args.preset, args, verb);
   fill_in_choices(args);
   if (is_done(start, args.run, args.training.iterations)) return 0;
-  if (!args.run.dry_run) make_folder(start.folder);
+  const RunFolder folder(args.run, start);
 
   const Context context;
   const motion::Dataset data = load_data(args);

@@ -135,6 +135,7 @@ TEST_CASE("a training that cannot be is refused before it begins") {
     CHECK(said.status == 1);
     CHECK_MESSAGE(said.has(why), said.text);
     CHECK(said.has("motiongan: "));
+    CHECK_FALSE(fs::exists("save"));  // the default of --save is below it
   };
   refused("", "there is nothing to train on");
   refused("nowhere", "nowhere does not exist");
