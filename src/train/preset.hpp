@@ -17,11 +17,14 @@ constexpr NameTable<TrainingPreset, 2> enum_names(TrainingPreset) {
 
 /// `text` says what the presets are.
 inline void add_preset_option(CLI::App& verb, TrainingPreset& preset, const std::string& text) {
-  std::map<std::string, TrainingPreset> names;
-  for (const auto& [value, name] : enum_names(preset)) names.emplace(name, value);
-  verb.add_option("--preset", preset, "what options are where none is given: " + text + " [steady]")
-      ->transform(CLI::CheckedTransformer(names))
-      ->type_name("steady|paper")
+  std::vector<std::string> names;
+  for (const auto& [value, name] : enum_names(preset)) names.emplace_back(name);
+  verb.add_option_function<std::string>(
+          "--preset",
+          [&preset](const std::string& name) { preset = enum_from<TrainingPreset>(name, "--preset"); },
+          "what options are where none is given: " + text)
+      ->check(CLI::IsMember(names))
+      ->default_str(name_of(preset))
       ->group("Training");
 }
 
@@ -29,7 +32,8 @@ inline constexpr const char* dvgan_presets =
     "steady: --root-rotation support, --leak 0.1 for an RNN generator, --critic-sees both, --loss-smooth 1, "
     "--loss-contact 1, --ema 0.999; paper: expmap, 0, rotations, 0, 0, 0";
 inline constexpr const char* attention_presets =
-    "steady: --exact-bones, --from-last-pose, --critic-directions, --ema 0.999; paper: none of them";
+    "steady: --exact-bones, --from-last-pose, --critic-directions, --loss-smooth 1, --loss-contact 1, "
+    "--ema 0.999; paper: none of them";
 
 /// Sets an option that the command line of `verb` does not give.
 template <class T, class U>
@@ -54,20 +58,23 @@ inline void apply(TrainingPreset preset, DvganArgs& args, const CLI::App& verb) 
 }
 
 /// The same for `train attention`. The LSTM baseline has the paper's form alone.
-inline void apply(TrainingPreset preset, ActionGanOptions& model, AttentionTrainOptions& training,
-                  const CLI::App& verb) {
+inline void apply(TrainingPreset preset, const motion::ActionDatasetOptions& data, ActionGanOptions& model,
+                  AttentionTrainOptions& training, const CLI::App& verb) {
   if (model.generator == ActionGenerator::lstm) return;
   const bool steady = preset == TrainingPreset::steady;
   set_default(verb, "--exact-bones", model.exact_bones, steady);
   set_default(verb, "--from-last-pose", model.continues, steady);
   set_default(verb, "--critic-directions", training.critic_directions, steady);
+  const bool jerks = steady && data.frames >= 2;  // with the frames before the seam
+  set_default(verb, "--loss-smooth", training.body.smooth, jerks ? 1.0 : 0.0);
+  set_default(verb, "--loss-contact", training.body.contact, jerks && data.root_track ? 1.0 : 0.0);
   set_default(verb, "--ema", training.ema, steady ? 0.999 : 0.0);
 }
 
 /// Leaves out the contact loss that the preset asks for where the skeleton has no feet.
-inline void without_feet(DvganArgs& args, const motion::Skeleton& skeleton, const CLI::App& verb) {
-  if (args.training.body.contact <= 0 || given(verb, "--loss-contact") || motion::has_feet(skeleton)) return;
-  args.training.body.contact = 0;
+inline void without_feet(BodyLossOptions& losses, const motion::Skeleton& skeleton, const CLI::App& verb) {
+  if (losses.contact <= 0 || given(verb, "--loss-contact") || motion::has_feet(skeleton)) return;
+  losses.contact = 0;
   print_fact("", "no joint is named like a foot: --loss-contact 0");
 }
 

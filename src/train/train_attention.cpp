@@ -100,7 +100,7 @@ int train_attention(AttentionArgs args, const CLI::App& verb) {
                   take_note(fields_of(args), verb, note, from, options_of_action_clips);
                 });
   fill_in_choices(args.data);
-  if (!args.run.resume) apply(args.preset, args.model, args.training, verb);
+  if (!args.run.resume) apply(args.preset, args.data.options, args.model, args.training, verb);
   args.model.seed = args.training.seed;
   if (args.model.generator == ActionGenerator::lstm) check_baseline(args, verb);
   args.training.adam.schedule.fix(args.training.iterations);
@@ -110,6 +110,7 @@ int train_attention(AttentionArgs args, const CLI::App& verb) {
   const Context context;
   const motion::ActionDataset data = load_data(args.data);
   print_data(data, args.data);
+  without_feet(args.training.body, data.format.skeleton(), verb);
   if (only_sized(context, data, args.model, args.training, args.run.dry_run,
                  args.training.iterations - start.done))
     return 0;

@@ -26,7 +26,7 @@ int train_dvgan(TrainDvganArgs args, const CLI::App& verb) {
   const Context context;
   const motion::Dataset data = load_data(args);
   print_data(data, args);
-  without_feet(args, data.format.skeleton(), verb);
+  without_feet(args.training.body, data.format.skeleton(), verb);
   if (only_sized(context, args.training, size_options(args.training.batch, args.model.hidden),
                  args.run.dry_run, args.training.iterations - start.done, builder(data, args.model)))
     return 0;

@@ -89,7 +89,9 @@ TEST_CASE("presets set what the command line does not") {
   CHECK(options("mixed", "training").find("\"critic_sees\":\"positions\"") != std::string::npos);
   // A resumed run keeps its options, whatever the preset would be.
   CHECK(call("train dvgan --resume --save paper --iterations 2").status == 0);
-  CHECK(call("train dvgan clips --save x --preset fast" + tiny).status > 100);
+  const Said unknown = call("train dvgan clips --save x --preset fast" + tiny);
+  CHECK(unknown.status > 100);
+  CHECK_MESSAGE(unknown.has("--preset: fast not in {steady,paper}"), unknown.text);
 
   const std::string actions =
       " --procedural 51 --iterations 1 --frames 8 --rate 10 --hidden 8 --batch 4 --critic-steps 1 --save ";
@@ -97,8 +99,15 @@ TEST_CASE("presets set what the command line does not") {
   CHECK(options("a_steady", "training").find("\"critic_directions\":true") != std::string::npos);
   CHECK(options("a_steady", "options").find("\"exact_bones\":true") != std::string::npos);
   CHECK(options("a_steady", "options").find("\"continues\":true") != std::string::npos);
+  CHECK(options("a_steady", "training").find("\"loss_contact\":1.0,\"loss_smooth\":1.0") !=
+        std::string::npos);
+  REQUIRE(call("train attention --no-root" + actions + "a_still").status == 0);
+  CHECK(options("a_still", "training").find("\"loss_contact\":0.0,\"loss_smooth\":1.0") != std::string::npos);
+  CHECK(call("train attention --no-root --loss-contact 1" + actions + "x")
+            .has("needs the height of the feet above the ground"));
   REQUIRE(call("train attention --preset paper --exact-bones" + actions + "a_paper").status == 0);
   CHECK(options("a_paper", "training").find("\"critic_directions\":false") != std::string::npos);
+  CHECK(options("a_paper", "training").find("\"loss_contact\":0.0,\"loss_smooth\":0.0") != std::string::npos);
   CHECK(options("a_paper", "options").find("\"exact_bones\":true") != std::string::npos);
   CHECK(options("a_paper", "options").find("\"continues\":false") != std::string::npos);
   CHECK(call("train attention --procedural 51 --iterations 1 --hidden 8 --model lstm --save a_lstm").status ==

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "../support/check_grads.hpp"
+#include "../support/small_actions.hpp"
 #include "motiongan/data/dataset.hpp"
 #include "motiongan/procedural/procedural.hpp"
 
@@ -80,6 +81,41 @@ TEST_CASE("what trembles or slides costs, what is like the clips does not" * doc
   for (motion::Joint& joint : s.joints) joint.name = "joint" + joint.name.substr(joint.name.size() / 2);
   arm.layout = motion::PoseLayout(s, true, 0, motion::RootRotation::velocity);
   CHECK_THROWS_WITH_AS(BodyLosses(arm, contact, truth), doctest::Contains("no joint names contain"), Error);
+}
+
+TEST_CASE("the losses of poses of positions" * doctest::test_suite("double")) {
+  const motion::PositionFormat& format = small_actions().format;
+  const std::size_t dof = format.dof(), frames = 8, batch = 4;
+  std::vector<double> real(frames * batch * dof);
+  for (std::size_t i = 0; i < real.size(); ++i) {
+    const std::size_t frame = i / dof / batch, b = i / dof % batch;
+    real[i] = small_actions().train[b].poses[(frame + 2 * b) * dof + i % dof];
+  }
+  const Shape shape{frames, batch, dof};
+  const Tensor truth = Tensor::from(double_context(), shape, real);
+  const BodyLosses smooth(format, {.smooth = 1}, truth), contact(format, {.contact = 1}, truth);
+  const auto loss = [&](const BodyLosses& losses, const std::vector<double>& made) {
+    return losses(Var::constant(Tensor::from(double_context(), shape, made)), Var::constant(truth)).item();
+  };
+  CHECK(loss(smooth, real) == 0);
+  CHECK(loss(contact, real) == 0);
+  std::vector<double> trembling = real, floating = real;
+  const auto& kept = format.normalizer.kept();
+  const auto height = static_cast<std::size_t>(
+      std::find(kept.begin(), kept.end(), format.layout.track_dim() + 2) - kept.begin());
+  REQUIRE(height < dof);
+  for (std::size_t i = 0; i < real.size(); ++i) {
+    trembling[i] += i / dof / batch % 2 == 0 ? 0.1 : -0.1;
+    if (i % dof == height) floating[i] += 5;
+  }
+  CHECK(loss(smooth, trembling) > 1);
+  CHECK(loss(contact, floating) > 0.02);
+  for (const BodyLosses* losses : {&smooth, &contact}) {
+    Input near = randn(shape);
+    for (std::size_t i = 0; i < real.size(); ++i) near.values[i] = real[i] + 0.2 * near.values[i];
+    const auto value = [&](auto& v) { return (*losses)(v[0], Var::constant(truth)); };
+    CHECK(check_grads(double_context(), value, {near}, 2, 1e-5) < 1e-5);
+  }
 }
 
 }  // namespace body_losses_test

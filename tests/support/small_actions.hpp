@@ -9,17 +9,20 @@
 namespace motiongan::testing {
 
 /// T = 6 at 10 Hz: 10 clips of about four seconds, alternating "stand" and "walk".
+inline motion::ActionDataset make_small_actions(bool root_track) {
+  std::vector<motion::LabelledMotion> clips;
+  for (std::size_t i = 0; i < 10; ++i) {
+    motion::LabelledMotion clip =
+        motion::procedural_motion(i, {.clips = 10, .seconds = 4, .rate = 20, .seed = 5});
+    clip.captions = {i % 2 == 0 ? "stand" : "walk"};
+    clips.push_back(std::move(clip));
+  }
+  return motion::ActionDataset::from_motions(clips, {.frames = 6, .rate = 10, .root_track = root_track});
+}
+
+/// Those with the root's track.
 inline const motion::ActionDataset& small_actions() {
-  static const motion::ActionDataset data = [] {
-    std::vector<motion::LabelledMotion> clips;
-    for (std::size_t i = 0; i < 10; ++i) {
-      motion::LabelledMotion clip =
-          motion::procedural_motion(i, {.clips = 10, .seconds = 4, .rate = 20, .seed = 5});
-      clip.captions = {i % 2 == 0 ? "stand" : "walk"};
-      clips.push_back(std::move(clip));
-    }
-    return motion::ActionDataset::from_motions(clips, {.frames = 6, .rate = 10});
-  }();
+  static const motion::ActionDataset data = make_small_actions(true);
   return data;
 }
 

@@ -127,6 +127,37 @@ TEST_CASE("losses equal their definitions, averaged over the rollouts") {
   CHECK(loss.total.item() == doctest::Approx(adversarial + 0.5 * skel + 2 * blend + 3 * wrong).epsilon(1e-4));
 }
 
+TEST_CASE("the losses on what is seen see the seam") {
+  const BodyLossOptions body{.smooth = 0.5, .contact = 2};
+  Run without({.critic_steps = 1, .batch = 3, .rollouts = 1});
+  Run with({.critic_steps = 1, .batch = 3, .rollouts = 1, .body = body});
+  const auto total = [](Run& run) {
+    const ActionSampler windows(run.context, small_actions(), small_actions().train);
+    return run.trainer.generator_loss_of(windows.draw(1, 0, 3), 0).total.item();
+  };
+  const ActionSampler windows(with.context, small_actions(), small_actions().train);
+  const ActionBatch batch = windows.draw(1, 0, 3);
+  const Var prior = Var::constant(batch.prior),
+            made = with.model.forward(prior, Var::constant(batch.classes));
+  const auto after = [&](const Var& future) { return concatenate({slice(prior, 0, 3, 3), future}, 0); };
+  const BodyLosses losses(with.model.format(), body, windows.draw(1, 0, 256).future);
+  const double expected = losses(after(made), after(Var::constant(batch.future))).item();
+  CHECK(expected > 0);
+  CHECK(total(with) - total(without) == doctest::Approx(expected).epsilon(1e-4));
+}
+
+TEST_CASE("without the root's track a body can tremble, but its feet have no height") {
+  const motion::ActionDataset data = make_small_actions(false);
+  ActionGan model(Context(), data.format, {.hidden = 8});
+  AttentionTrainOptions options = small_options;
+  options.body.smooth = 1;
+  AttentionTrainer trainer(model, data, options);
+  trainer.iterate();
+  CHECK(std::isfinite(trainer.losses().adversarial));
+  options.body.contact = 1;
+  CHECK(says(message_of([&] { AttentionTrainer(model, data, options); }), "needs the height of the feet"));
+}
+
 TEST_CASE("a loss with weight 0 is not computed") {
   Run run({.critic_steps = 1, .batch = 3, .skeleton_weight = 0, .blend_weight = 0, .class_weight = 0});
   run.trainer.iterate();
@@ -172,7 +203,11 @@ TEST_CASE("every option changes the result") {
   all.insert(trained(o, {.hidden = 8}));
   o.generator_steps = 2;
   all.insert(trained(o, {.hidden = 8}));
-  CHECK(all.size() == 10);
+  o.body.smooth = 1;
+  all.insert(trained(o, {.hidden = 8}));
+  o.body.contact = 1;
+  all.insert(trained(o, {.hidden = 8}));
+  CHECK(all.size() == 12);
 }
 
 TEST_CASE("a resumed run equals an uninterrupted one bit for bit") {

@@ -1,5 +1,5 @@
-// Losses of a text-conditioned generator on what is seen of the body: how much it trembles and how its feet
-// stand, beside real motion. Not in the papers.
+// Losses of a generator on what is seen of the body: how much it trembles and how its feet stand, beside real
+// motion. Not in the papers.
 #pragma once
 #include <cmath>
 #include <vector>
@@ -41,9 +41,10 @@ struct BodyLossOptions {
 ///   the lowest tenth of the foot's heights in real motion begins.
 class BodyLosses {
  public:
-  /// `real` [N, B, dof]: normalised windows, from which the floor is taken. Throws Error for a contact loss
-  /// and a skeleton without feet.
-  BodyLosses(const motion::MotionFormat& format, const BodyLossOptions& options, const Tensor& real)
+  /// `real` [N, B, dof]: normalised windows, from which the floor is taken; `format` one of rotations or
+  /// positions. Throws Error for a contact loss and a skeleton without feet.
+  template <class Format>
+  BodyLosses(const Format& format, const BodyLossOptions& options, const Tensor& real)
       : options_(options), view_(real.context(), format) {
     if (options.contact <= 0) return;
     const Var seen = view_(Var::constant(real));

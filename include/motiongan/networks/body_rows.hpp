@@ -26,10 +26,13 @@ inline Ground turned(const Ground& ground, const Var& yaw) { return turned(groun
 
 /// Poses by rows. Poses are numbered frame by frame: f * batch + b. Lengths are in the clips' unit.
 struct BodyRows {
-  Var rotations;  ///< [3 * joints, poses], exponential maps; the root's as the pose layout has it
-  Var track;      ///< [4, poses]: x, y, z of the root's position, and its yaw or turn, as the layout has them
-  Ground body;    ///< joints about the root, [joints, poses], in its heading (in the world without yaw)
-  Var height;     ///< above the ground, [joints, poses]
+  /// [3 * joints, poses], exponential maps, the root's as the pose layout has it; empty in poses of
+  /// positions.
+  Var rotations;
+  /// [4, poses]: x, y, z of the root's position, and its yaw or turn, as the layout has them; likewise.
+  Var track;
+  Ground body;  ///< joints about the root, [joints, poses], in its heading (in the world without yaw)
+  Var height;   ///< above the ground, [joints, poses]
   /// From the second frame on, in the heading of the frame before: the root's step, [1, poses - batch], and
   /// how far the joints move about the root, [joints, poses - batch].
   Ground step, moved;
@@ -65,6 +68,7 @@ class BodyReader {
   }
 
   const motion::PoseLayout& layout() const { return layout_; }
+  std::size_t root() const { return layout_.root(); }
   std::size_t joints() const { return joints_; }
   /// Whether a joint hangs on the root; others, and the root, are taken to be where the root is.
   bool hangs(std::size_t joint) const { return tree_.parent[joint] >= 0; }

@@ -1,12 +1,13 @@
 // A motion as an onlooker sees it: where the joints are and how fast they move, computed from the pose
-// vectors of a network by differentiable forward kinematics.
+// vectors of a network: of rotations, by differentiable forward kinematics, or of positions.
 #pragma once
 #include <algorithm>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "motiongan/motion/feet.hpp"
-#include "motiongan/networks/body_rows.hpp"
+#include "motiongan/networks/position_rows.hpp"
 
 namespace motiongan {
 
@@ -23,27 +24,11 @@ class BodyView {
   static constexpr double place_scale = 3;
 
   /// Throws Error for a skeleton without a bone of positive length.
-  BodyView(const Context& context, const motion::MotionFormat& format) : reader_(context, format) {
-    const motion::Skeleton& skeleton = format.skeleton();
-    const std::size_t joints = skeleton.size();
-    const double leg = motion::body_unit(skeleton);
-    require(leg > 0, "the skeleton has no bones of positive length: its joints have no places to be seen");
-
-    // Rows: x, height and z of all joints, then their velocities.
-    std::vector<std::pair<std::size_t, double>> seen;
-    for (std::size_t part = 0; part < 6; ++part)
-      for (std::size_t j = 0; j < joints; ++j) {
-        const bool fixed = j == reader_.layout().root() && (part == 0 || part == 2);
-        if (!fixed && shown(skeleton, j))
-          seen.emplace_back(part * joints + j, (part < 3 ? place_scale : format.rate) / leg);
-      }
-    for (std::size_t j = 0; j < joints; ++j)
-      if (shown(skeleton, j)) shown_.push_back(j);
-    size_ = seen.size();
-    std::vector<double> select(6 * joints * size_);
-    for (std::size_t k = 0; k < size_; ++k) select[seen[k].first * size_ + k] = seen[k].second;
-    select_ = Var::constant(Tensor::from(context, {6 * joints, size_}, select));
-  }
+  BodyView(const Context& context, const motion::MotionFormat& format)
+      : BodyView(context, BodyReader(context, format), format.skeleton(), format.rate) {}
+  /// The same for poses of positions. Without the root's track it stays at the origin.
+  BodyView(const Context& context, const motion::PositionFormat& format)
+      : BodyView(context, PositionReader(context, format), format.skeleton(), format.rate) {}
 
   /// Values per frame.
   std::size_t size() const { return size_; }
@@ -62,12 +47,13 @@ class BodyView {
   /// fewer than 2 frames.
   Var operator()(const Var& motion) const {
     const std::size_t frames = motion.dim(0), batch = motion.dim(1), poses = frames * batch;
-    const BodyRows rows = reader_(motion);
+    const BodyRows rows = std::visit([&](const auto& reader) { return reader(motion); }, reader_);
+    const auto over_joints = [&](const Var& row) { return broadcast_to(row, rows.moved.x.shape()); };
     const auto now = [&](const Var& v) { return slice(v, 1, batch, poses - batch); };
     const auto before = [&](const Var& v) { return slice(v, 1, 0, poses - batch); };
     const Var speed =
-        concatenate({rows.moved.x + reader_.over_joints(rows.step.x), now(rows.height) - before(rows.height),
-                     rows.moved.z + reader_.over_joints(rows.step.z)},
+        concatenate({rows.moved.x + over_joints(rows.step.x), now(rows.height) - before(rows.height),
+                     rows.moved.z + over_joints(rows.step.z)},
                     0);
     const Var seen = concatenate({concatenate({rows.body.x, rows.height, rows.body.z}, 0),
                                   concatenate({slice(speed, 1, 0, batch), speed}, 1)},
@@ -76,13 +62,38 @@ class BodyView {
   }
 
  private:
-  /// Whether a joint is the root, or hangs on it in a place of its own.
-  bool shown(const motion::Skeleton& skeleton, std::size_t j) const {
-    const std::size_t root = reader_.layout().root();
-    return j == root || (reader_.hangs(j) && motion::length(skeleton.joints[j].offset) > 0);
+  using Reader = std::variant<BodyReader, PositionReader>;
+
+  BodyView(const Context& context, Reader reader, const motion::Skeleton& skeleton, double rate)
+      : reader_(std::move(reader)) {
+    const std::size_t joints = skeleton.size();
+    const double leg = motion::body_unit(skeleton);
+    require(leg > 0, "the skeleton has no bones of positive length: its joints have no places to be seen");
+    const std::size_t root = std::visit([](const auto& from) { return from.root(); }, reader_);
+
+    // Rows: x, height and z of all joints, then their velocities.
+    std::vector<std::pair<std::size_t, double>> seen;
+    for (std::size_t part = 0; part < 6; ++part)
+      for (std::size_t j = 0; j < joints; ++j) {
+        const bool fixed = j == root && (part == 0 || part == 2);
+        if (!fixed && (j == root || hangs_apart(skeleton, j)))
+          seen.emplace_back(part * joints + j, (part < 3 ? place_scale : rate) / leg);
+      }
+    for (std::size_t j = 0; j < joints; ++j)
+      if (j == root || hangs_apart(skeleton, j)) shown_.push_back(j);
+    size_ = seen.size();
+    std::vector<double> select(6 * joints * size_);
+    for (std::size_t k = 0; k < size_; ++k) select[seen[k].first * size_ + k] = seen[k].second;
+    select_ = Var::constant(Tensor::from(context, {6 * joints, size_}, select));
   }
 
-  BodyReader reader_;
+  /// Whether a joint hangs on the root, in a place of its own.
+  bool hangs_apart(const motion::Skeleton& skeleton, std::size_t j) const {
+    return std::visit([&](const auto& from) { return from.hangs(j); }, reader_) &&
+           motion::length(skeleton.joints[j].offset) > 0;
+  }
+
+  Reader reader_;
   std::size_t size_ = 0;
   std::vector<std::size_t> shown_;
   Var select_;

@@ -4,6 +4,7 @@
 #include "motiongan/models/action_gan.hpp"
 #include "motiongan/networks/attention_classifier.hpp"
 #include "motiongan/networks/attention_critic.hpp"
+#include "motiongan/networks/body_losses.hpp"
 #include "motiongan/networks/motion_losses.hpp"
 #include "motiongan/optim/adam.hpp"
 #include "motiongan/train/action_windows.hpp"
@@ -28,6 +29,7 @@ struct AttentionTrainOptions {
   bool skeleton_vectors = false;    ///< L_skel compares bone vectors, as eq. 9 is printed, not bone lengths
   bool critic_classes = false;      ///< give the critic the class
   bool critic_directions = false;   ///< give the critic the directions of the bones too; the paper: no
+  BodyLossOptions body{};           ///< not in the paper
   bool balanced = true;             ///< draw classes with equal probability, however many clips they have
   AdamOptions adam{};               ///< used for all three networks
   double ema = 0.999;               ///< decay of the running mean of the generator's weights; 0: none
@@ -68,6 +70,7 @@ struct AttentionTrainOptions {
     list.add(critic_directions, {.key = "critic_directions",
                                  .help = "give the critic the directions of the bones too; the paper: off",
                                  .group = "Model"});
+    body.list_fields(list);
     list.add(balanced, {.key = "balanced",
                         .help = "draw all classes with equal probability, however many clips they have"});
     adam.list_fields(list);
@@ -151,6 +154,12 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
     model.generator();  // throws for the baseline
     if (options.ema > 0) mean_.emplace(generator_adam_, options.ema);
     detail::require_same_format(data.format, model.format());
+    if (options.body.contact > 0)
+      require(model.format().layout.root_track(),
+              "the contact loss needs the height of the feet above the ground, which a model without the "
+              "root's track (--no-root) does not know");
+    if (options.body.any())
+      body_losses_.emplace(model.format(), options.body, windows_.draw(options.seed, 0, 256).future);
   }
 
   AttentionCritic& critic() { return critic_; }
@@ -235,6 +244,9 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
       add(loss.skeleton, options_.skeleton_weight,
           skeleton_loss_(repeated(slice(real_prior, 0, 0, 1), 1), made));
     if (options_.blend_weight > 0) add(loss.blend, options_.blend_weight, blend_loss(fed, made));
+    if (body_losses_)
+      loss.total = loss.total +
+                   (*body_losses_)(with_seam(fed, made), with_seam(real_prior, Var::constant(batch.future)));
     if (options_.class_weight > 0)
       add(loss.classification, options_.class_weight, cross_entropy(classifier_(made), all_classes));
     return loss;
@@ -325,6 +337,12 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
     return key;
   }
 
+  /// A future with the last frames of the motion before it, of which the jerk at the seam is made.
+  static Var with_seam(const Var& prior, const Var& future) {
+    const std::size_t frames = std::min<std::size_t>(prior.dim(0), 3);
+    return concatenate({slice(prior, 0, prior.dim(0) - frames, frames), future}, 0);
+  }
+
   Var seen(const Var& motion) const { return detail::critic_view(bones_, options_, motion); }
 
   Var score(const Var& motion, const Var& classes) const {
@@ -336,6 +354,7 @@ class AttentionTrainer : public ModelTrainer<ActionGan, AttentionTrainOptions, A
   AttentionCritic critic_;
   AttentionClassifier classifier_;
   SkeletonLoss skeleton_loss_;
+  std::optional<BodyLosses> body_losses_;
   Adam generator_adam_, critic_adam_, classifier_adam_;
   std::optional<WeightMean> mean_;  // of the generator
   Var wasserstein_, penalty_, classifier_loss_;
