@@ -72,7 +72,7 @@ void show_shipped_motions(const Context& context, const fs::path& out) {
     return;
   }
   make_folder(out / "shipped");
-  const Cleaning cleaning{{"feet", "smooth"}, {}};
+  const Cleaning cleaning{{"feet"}, {}};  // they do not tremble
   std::vector<view::ViewedMotion> page;
   const auto is_shown = [&](const std::string& subject) {
     return std::any_of(page.begin(), page.end(),
