@@ -17,15 +17,9 @@ constexpr NameTable<TrainingPreset, 2> enum_names(TrainingPreset) {
 
 /// `text` says what the presets are.
 inline void add_preset_option(CLI::App& verb, TrainingPreset& preset, const std::string& text) {
-  std::vector<std::string> names;
-  for (const auto& [value, name] : enum_names(preset)) names.emplace_back(name);
-  verb.add_option_function<std::string>(
-          "--preset",
-          [&preset](const std::string& name) { preset = enum_from<TrainingPreset>(name, "--preset"); },
-          "what options are where none is given: " + text)
-      ->check(CLI::IsMember(names))
-      ->default_str(name_of(preset))
-      ->group("Training");
+  FieldList list;
+  list.add(preset, {.key = "preset", .help = "what options are where none is given: " + text});
+  add_options(verb, list, "Training");
 }
 
 inline constexpr const char* dvgan_presets =
